@@ -1,0 +1,249 @@
+//! One block of G-code.
+//!
+//! The words are gathered first, in whatever order they stand ([`Block`]); then the modal codes take effect, then F,
+//! then everything else. Axis words and arcs are in [`motion`](super::motion).
+
+use heapless::Vec;
+
+use interp_core::units::{Feedrate, Sense};
+
+use super::diagnostic::{Diagnostic, DiagnosticKind, Report};
+use super::item::{Action, Feed, SpindleSpeed};
+use super::modal::{Motion, State};
+use super::settings::{Format, Settings};
+use super::word::{Lexer, Placed};
+use super::words::{Words, check_block_number, exclude};
+
+/// Supported G codes.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+enum Code {
+    Motion(Motion),
+    Dwell,
+    /// True for G7.
+    Diameter(bool),
+    Plane,
+    /// True for G20.
+    Inch(bool),
+    /// True for G91.
+    Incremental(bool),
+    FeedPerMinute,
+}
+
+/// Number of modal groups.
+const GROUPS: usize = 7;
+
+impl Code {
+    fn from_number(number: u32) -> Option<Self> {
+        Some(match number {
+            0 => Self::Motion(Motion::Rapid),
+            1 => Self::Motion(Motion::Line),
+            2 => Self::Motion(Motion::Arc(Sense::Clockwise)),
+            3 => Self::Motion(Motion::Arc(Sense::CounterClockwise)),
+            4 => Self::Dwell,
+            7 => Self::Diameter(true),
+            8 => Self::Diameter(false),
+            18 => Self::Plane,
+            20 => Self::Inch(true),
+            21 => Self::Inch(false),
+            90 => Self::Incremental(false),
+            91 => Self::Incremental(true),
+            94 => Self::FeedPerMinute,
+            _ => return None,
+        })
+    }
+
+    /// Whether two codes exclude each other in one block.
+    fn is_same_group(self, other: Self) -> bool {
+        core::mem::discriminant(&self) == core::mem::discriminant(&other)
+    }
+}
+
+/// What a line says, before it is understood.
+#[derive(Debug, Default)]
+pub(super) struct Block {
+    pub(super) words: Words,
+    codes: Vec<(Code, Placed), GROUPS>,
+    /// A word was refused that the other words might depend on.
+    pub(super) is_foreign: bool,
+    /// F was written, right or wrong.
+    pub(super) has_feed: bool,
+}
+
+impl Block {
+    /// Gathers the words of a line.
+    fn read(lexer: Lexer<'_>, report: &mut Report<'_, impl FnMut(Diagnostic)>) -> Self {
+        let mut block = Self::default();
+        let mut is_first = true;
+        for token in lexer {
+            match token {
+                Ok(placed) => block.accept(placed, is_first, report),
+                Err((span, kind)) => {
+                    match kind.lost_letter() {
+                        Some('F') => block.has_feed = true,
+                        None | Some('M' | 'N' | 'O' | 'S' | 'T') => {}
+                        // the lost word may be the one that the others need
+                        Some(_) => block.is_foreign = true,
+                    }
+                    report.tell(span, kind);
+                }
+            }
+            is_first = false;
+        }
+        block
+    }
+
+    fn accept(&mut self, placed: Placed, is_first: bool, report: &mut Report<'_, impl FnMut(Diagnostic)>) {
+        let word = placed.word;
+        match word.letter {
+            'G' => self.code(placed, report),
+            'M' => self.words.machine(placed, report),
+            'O' if !is_first => report.tell(placed.span, DiagnosticKind::ProgramNumberPlace(word)),
+            'N' | 'O' => {
+                check_block_number(placed, report);
+                self.words.keep(placed, report);
+            }
+            'F' | 'S' | 'T' | 'X' | 'Z' | 'U' | 'W' | 'I' | 'K' | 'R' | 'P' => self.words.keep(placed, report),
+            _ => {
+                self.is_foreign = true;
+                report.tell(placed.span, DiagnosticKind::UnknownLetter { word, format: Format::Gcode });
+            }
+        }
+    }
+
+    fn code(&mut self, placed: Placed, report: &mut Report<'_, impl FnMut(Diagnostic)>) {
+        let word = placed.word;
+        let Some(code) = word.number.code().and_then(Code::from_number) else {
+            self.is_foreign = true;
+            return report.tell(placed.span, DiagnosticKind::UnknownG { word, format: Format::Gcode });
+        };
+        match self.codes.iter().find(|(other, _)| other.is_same_group(code)) {
+            Some(&(_, first)) => report.tell(placed.span, exclude(first, placed)),
+            // cannot be full: one place for each group
+            None => {
+                let _ = self.codes.push((code, placed));
+            }
+        }
+    }
+
+    /// The motion code of this block.
+    pub(super) fn motion_word(&self) -> Option<Placed> {
+        self.codes.iter().find(|(code, _)| matches!(code, Code::Motion(_))).map(|&(_, placed)| placed)
+    }
+
+    /// The G4 of this block.
+    pub(super) fn dwell_word(&self) -> Option<Placed> {
+        self.codes.iter().find(|(code, _)| matches!(code, Code::Dwell)).map(|&(_, placed)| placed)
+    }
+
+    /// Puts the modal codes into force.
+    fn apply(&self, state: &mut State) {
+        for &(code, _) in &self.codes {
+            match code {
+                Code::Motion(motion) => state.motion = Some(motion),
+                Code::Diameter(diameter) => state.diameter = diameter,
+                Code::Inch(inch) => state.inch = inch,
+                Code::Incremental(incremental) => state.incremental = incremental,
+                Code::Dwell | Code::Plane | Code::FeedPerMinute => {}
+            }
+        }
+    }
+}
+
+/// Actions of a block, in execution order.
+pub(crate) type Actions = [Option<Action>; 6];
+
+/// Reads one block. The actions count only if nothing was refused; whether the program ends counts always.
+pub(crate) fn block(
+    lexer: Lexer<'_>,
+    settings: &Settings,
+    state: &mut State,
+    report: &mut Report<'_, impl FnMut(Diagnostic)>,
+) -> (Actions, bool) {
+    let mut block = Block::read(lexer, report);
+    block.apply(state);
+    if let Some(placed) = block.words.get('F') {
+        block.has_feed = true;
+        feed(placed, settings, state, report);
+    }
+    let speed = block.words.get('S').and_then(|placed| speed(placed, report));
+    let spindle = block.words.spindle.map(|(action, _)| action);
+    let tool = block.words.get('T').and_then(|placed| tool(placed, report));
+    let dwell = dwell(&block, report);
+    let motion = super::motion::motion(&block, settings, state, report);
+    let stop = block.words.stop.map(|(action, _)| action);
+    ([speed, spindle, tool, dwell, motion, stop], block.words.ends())
+}
+
+/// F: millimetres (inches) a minute.
+fn feed(placed: Placed, settings: &Settings, state: &mut State, report: &mut Report<'_, impl FnMut(Diagnostic)>) {
+    let word = placed.word;
+    let (limit_x, limit_z) = (settings.max_feed_x, settings.max_feed_z);
+    let too_high = DiagnosticKind::FeedTooHigh { word, limit_x, limit_z };
+    match word.number.scaled(state.unit_nm()).map(u64::try_from) {
+        None if !word.number.is_negative() => report.tell(placed.span, too_high),
+        None | Some(Err(_) | Ok(0)) => report.tell(placed.span, DiagnosticKind::FeedNotPositive(word)),
+        Some(Ok(nm_per_min)) => match Feedrate::from_nm_per_min(nm_per_min) {
+            Some(feed) if feed <= limit_x.max(limit_z) => state.feed = Some(Feed::PerMinute(feed)),
+            _ => report.tell(placed.span, too_high),
+        },
+    }
+}
+
+/// S: turns a minute.
+fn speed(placed: Placed, report: &mut Report<'_, impl FnMut(Diagnostic)>) -> Option<Action> {
+    let milli_rpm = placed.word.number.scaled(1_000).and_then(|milli_rpm| u32::try_from(milli_rpm).ok());
+    let speed = milli_rpm.and_then(SpindleSpeed::from_milli_rpm);
+    if speed.is_none() {
+        report.tell(placed.span, DiagnosticKind::SpindleSpeed(placed.word));
+    }
+    speed.map(Action::SpindleSpeed)
+}
+
+/// T: one or two digits are a tool with its own offset, three or four end in two digits of offset.
+fn tool(placed: Placed, report: &mut Report<'_, impl FnMut(Diagnostic)>) -> Option<Action> {
+    let digits = placed.word.number.integer_digits();
+    let code = placed.word.number.code().and_then(|code| u16::try_from(code).ok());
+    match code {
+        Some(code) if digits <= 4 && !placed.word.number.has_point() => {
+            let (number, offset) = if digits <= 2 { (code, code) } else { (code / 100, code % 100) };
+            Some(Action::Tool { number, offset })
+        }
+        _ => {
+            report.tell(placed.span, DiagnosticKind::ToolNumber(placed.word));
+            None
+        }
+    }
+}
+
+/// G4 with P in seconds.
+fn dwell(block: &Block, report: &mut Report<'_, impl FnMut(Diagnostic)>) -> Option<Action> {
+    let placed = match (block.dwell_word(), block.words.get('P')) {
+        (Some(_), Some(placed)) => placed,
+        (Some(code), None) => {
+            if !block.is_foreign {
+                report.tell(code.span, DiagnosticKind::DwellMissing);
+            }
+            return None;
+        }
+        (None, Some(placed)) => {
+            if !block.is_foreign {
+                report.tell(placed.span, DiagnosticKind::DwellWordUnused(placed.word));
+            }
+            return None;
+        }
+        (None, None) => return None,
+    };
+    let word = placed.word;
+    if word.number.is_negative() && !word.number.is_zero() {
+        report.tell(placed.span, DiagnosticKind::DwellNegative(word));
+        return None;
+    }
+    let Some(ms) = word.number.scaled(1_000).and_then(|ms| u32::try_from(ms).ok()) else {
+        report.tell(placed.span, DiagnosticKind::DwellTooLong(word));
+        return None;
+    };
+    if ms >= 60_000 && !word.number.has_point() {
+        report.tell(placed.span, DiagnosticKind::DwellLong(word));
+    }
+    Some(Action::Dwell { ms })
+}

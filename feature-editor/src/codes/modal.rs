@@ -1,0 +1,50 @@
+//! What stays in force from line to line.
+
+use interp_core::units::{Point, Sense};
+
+use super::item::Feed;
+
+/// Motion mode, as programmed (not yet mirrored).
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Motion {
+    /// G0.
+    Rapid,
+    /// G1.
+    Line,
+    /// G2, G3.
+    Arc(Sense),
+}
+
+/// Modal state.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct State {
+    /// Where the program has led the tool.
+    pub(crate) position: Point,
+    /// None until one was written.
+    pub(crate) motion: Option<Motion>,
+    /// G7: X and U are diameters.
+    pub(crate) diameter: bool,
+    /// G20.
+    pub(crate) inch: bool,
+    /// G91.
+    pub(crate) incremental: bool,
+    /// None until one was written. [`Feed::Rapid`] only in the 1973 format.
+    pub(crate) feed: Option<Feed>,
+}
+
+impl State {
+    /// State at the start of a program.
+    pub(crate) const fn new(position: Point) -> Self {
+        Self { position, motion: None, diameter: false, inch: false, incremental: false, feed: None }
+    }
+
+    /// Nanometres of a written 1: of a length along the path, of Z, of a radius.
+    pub(crate) const fn unit_nm(&self) -> u32 {
+        if self.inch { 25_400_000 } else { 1_000_000 }
+    }
+
+    /// Nanometres of radius of a written 1 of X or U. This is the only place of the factor two.
+    pub(crate) const fn unit_x_nm(&self) -> u32 {
+        if self.diameter { self.unit_nm() >> 1 } else { self.unit_nm() }
+    }
+}

@@ -1,0 +1,369 @@
+//! Blocks: one motion with its limits, ready to execute; and the builder that makes them of programmed curves.
+//!
+//! The builder rounds end points to the lattice, prepares the curve between rounded ends, and works out what the
+//! machine allows on it: the speed that no axis's maximum is passed at, the acceleration, and the speed at which the
+//! joint with the block before may be taken without an axis jumping by more than its `max_jump`. It runs in the
+//! background; a block is all that the foreground gets.
+
+use crate::config::{FRACTION_BITS, Machine, speed_of};
+use crate::curve::arc::Arc;
+use crate::curve::line::Line;
+use crate::curve::prepare_arc::{Metric, Prepared};
+use crate::curve::proportion::Proportion;
+use crate::math::{RADIAN_Q30, root_wide, scale, to_i64, to_u32, to_u64};
+use crate::units::{Axis, Feedrate, Lattice, Length, Point, Sense};
+use heapless::Vec;
+
+/// Speed in nanometres a tick, 12 fraction bits.
+pub type Speed = u32;
+
+/// How fast a block is to be run.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// As fast as the limits allow.
+    Rapid,
+    /// Along the path, times the feed override.
+    Feed(Feedrate),
+}
+
+/// A programmed curve, from where the last one ended.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Path {
+    /// Straight to the end.
+    Line,
+    /// About `centre` (X, Z, nm); a full circle where the end is the start.
+    Arc {
+        /// Centre, X and Z in nm.
+        centre: (i64, i64),
+        /// Sense of travel.
+        sense: Sense,
+    },
+}
+
+/// Where a block goes.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Curve {
+    /// Straight; from length to steps of the major axis, 16 fraction bits.
+    Line(Line, Proportion),
+    /// Round.
+    Arc(Arc),
+}
+
+impl Curve {
+    /// The end, X then Z, pulses from the start.
+    pub const fn end(&self) -> (i32, i32) {
+        match self {
+            Self::Line(line, _) => line.end(),
+            Self::Arc(arc) => arc.end(),
+        }
+    }
+}
+
+/// One motion with its limits.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Motion {
+    /// Where to.
+    pub curve: Curve,
+    /// Length of the walked curve, nm with 12 fraction bits, never 0.
+    pub length: u64,
+    /// Programmed feed; `None` is a rapid.
+    pub feed: Option<Speed>,
+    /// Largest speed on this block, whatever the override.
+    pub limit: Speed,
+    /// Largest acceleration along the path, nm a tick squared with 12 fraction bits.
+    pub accel: u32,
+    /// Largest speed over the joint with the block before, where that one is a motion.
+    pub joint: Speed,
+    /// Speed at which it may begin from standstill.
+    pub start: Speed,
+    /// Speed at which it may end in standstill.
+    pub stop: Speed,
+    /// The programmed curve goes on in the next block (an arc of more than half a turn).
+    pub continues: bool,
+}
+
+/// What the channel executes.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// Line of the program, from 1.
+    pub line: u32,
+    /// What to do.
+    pub work: Work,
+}
+
+/// What a block does.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+#[expect(clippy::large_enum_variant, reason = "no allocation: the queue holds the largest")]
+pub enum Work {
+    /// Moves.
+    Motion(Motion),
+    /// Stands still for this many ticks.
+    Dwell(u32),
+    /// An output changes while all stands still.
+    Output(Output),
+    /// The program waits for cycle start.
+    Stop,
+    /// Like `Stop`, where the operator has switched optional stops on.
+    OptionalStop,
+    /// The program is over.
+    End,
+}
+
+/// Outputs that a program sets.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Output {
+    /// Spindle forward.
+    SpindleForward,
+    /// Spindle backward.
+    SpindleReverse,
+    /// Spindle off.
+    SpindleStop,
+    /// Spindle speed, thousandths of a turn a minute.
+    SpindleSpeed(u32),
+    /// Tool and offset number.
+    Tool(u16, u16),
+}
+
+/// A feed that an axis's maximum cut down on a block.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Limited {
+    /// The axis whose maximum it was.
+    pub axis: Axis,
+    /// The speed that is left.
+    pub speed: Speed,
+}
+
+/// What became of a programmed curve.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Built {
+    /// The blocks: none where the ends round to one lattice point.
+    pub motions: Vec<Motion, 2>,
+    /// Where an axis can't reach the programmed feed.
+    pub limited: Option<Limited>,
+    /// The curve leaves the range of [`Length`]; nothing was built and the position is as before.
+    pub out_of_range: bool,
+}
+
+/// A direction: X and Z parts of a unit vector, 30 fraction bits.
+type Direction = (i64, i64);
+
+/// Makes blocks of programmed curves.
+#[derive(Clone, Debug)]
+pub struct Builder {
+    machine: Machine,
+    metric: Metric,
+    /// Programmed position.
+    at: Point,
+    lattice: Lattice,
+    /// Direction in which the last motion ended; `None` after a standstill.
+    heading: Option<Direction>,
+}
+
+/// The part of its acceleration that an arc's curvature may take: at most sqrt(0.98 a R), so that a fifth of the
+/// acceleration is always left to brake with.
+const CURVATURE_SHARE: (u128, u128) = (98, 100);
+
+impl Builder {
+    /// A builder that stands at `at`.
+    pub fn new(machine: &Machine, at: Point) -> Self {
+        let lattice = Lattice { x: machine.x.pulse.nearest(at.x), z: machine.z.pulse.nearest(at.z) };
+        Self { machine: *machine, metric: Metric::new(machine.x.pulse, machine.z.pulse), at, lattice, heading: None }
+    }
+
+    /// Where the last curve ended, rounded.
+    pub const fn lattice(&self) -> Lattice {
+        self.lattice
+    }
+
+    /// Notes that the tool comes to a standstill here.
+    pub const fn standstill(&mut self) {
+        self.heading = None;
+    }
+
+    /// Makes the blocks of one programmed curve.
+    pub fn motion(&mut self, path: Path, end: Point, pace: Pace) -> Built {
+        let mut built = Built::default();
+        match path {
+            Path::Line => self.line(end, pace, &mut built),
+            Path::Arc { centre, sense } => match split(self.at, end, centre, sense) {
+                Split::Halves(middle) => {
+                    self.arc(middle, centre, sense, pace, &mut built);
+                    self.arc(end, centre, sense, pace, &mut built);
+                    if let [first, _] = built.motions.as_mut_slice() {
+                        first.continues = true;
+                    }
+                }
+                Split::Whole => self.arc(end, centre, sense, pace, &mut built),
+                Split::OutOfRange => built.out_of_range = true,
+            },
+        }
+        built
+    }
+
+    fn rounded(&self, end: Point) -> Lattice {
+        Lattice { x: self.machine.x.pulse.nearest(end.x), z: self.machine.z.pulse.nearest(end.z) }
+    }
+
+    /// Displacement of (`x`, `z`) pulses in nm with 12 fraction bits.
+    fn span(&self, x: i32, z: i32) -> (i128, i128) {
+        let place = |pulse: crate::units::PulseSize, n: i32| {
+            scale(i128::from(n), i128::from(pulse.numerator()) << FRACTION_BITS, i128::from(pulse.denominator()))
+        };
+        (place(self.machine.x.pulse, x), place(self.machine.z.pulse, z))
+    }
+
+    fn line(&mut self, end: Point, pace: Pace, built: &mut Built) {
+        let to = self.rounded(end);
+        self.at = end;
+        let (x, z) = (to.x.wrapping_sub(self.lattice.x), to.z.wrapping_sub(self.lattice.z));
+        let Some(line) = Line::new(x, z) else { return };
+        self.lattice = to;
+        let (dx, dz) = self.span(x, z);
+        let square = dx.saturating_mul(dx).saturating_add(dz.saturating_mul(dz));
+        let length = root_wide(square.unsigned_abs()).max(1);
+        let part = |d: i128| to_i64(scale(d, i128::from(RADIAN_Q30), i128::from(length)));
+        let heading = (part(dx), part(dz));
+        let by_axis = self.speed_limit(heading);
+        let accel = Self::least(self.machine.x.accel, self.machine.z.accel, heading).0;
+        let steps = Proportion::new(u64::from(line.steps()) << 16, length, length);
+        let run = Run { length, entry: heading, exit: heading, by_axis, by_bend: Speed::MAX, accel };
+        self.finish(Curve::Line(line, steps), &run, pace, built);
+    }
+
+    fn arc(&mut self, end: Point, centre: (i64, i64), sense: Sense, pace: Pace, built: &mut Built) {
+        let to = self.rounded(end);
+        match self.metric.arc(self.lattice, to, centre, sense) {
+            Prepared::Nothing => self.at = end,
+            Prepared::Chord => self.line(end, pace, built),
+            Prepared::Arc(arc, turn) => {
+                self.at = end;
+                self.lattice = to;
+                let (entry, exit, extent) = (turn.heading(0), turn.heading(turn.sweep), turn.extent());
+                let by_axis = self.speed_limit(extent);
+                let accel = self.machine.x.accel.min(self.machine.z.accel);
+                // v^2 = 0.98 a R; both sides with 24 fraction bits
+                let square = u128::from(accel).wrapping_mul(u128::from(arc.radius()));
+                let (share, of) = CURVATURE_SHARE;
+                let by_bend = to_u32(root_wide(square.wrapping_mul(share) / of));
+                let run = Run { length: arc.length().max(1), entry, exit, by_axis, by_bend, accel };
+                self.finish(Curve::Arc(arc), &run, pace, built);
+            }
+        }
+    }
+
+    /// The largest value along a direction whose parts stay within `x` and `z`, and the axis that sets it.
+    fn least(x: u32, z: u32, (ux, uz): Direction) -> (u32, Axis) {
+        let along = |limit: u32, part: i64| {
+            let part = part.unsigned_abs();
+            if part == 0 { u64::MAX } else { (u64::from(limit) << 30) / part }
+        };
+        let (by_x, by_z) = (along(x, ux), along(z, uz));
+        let axis = if by_x < by_z { Axis::X } else { Axis::Z };
+        (to_u32(by_x.min(by_z)), axis)
+    }
+
+    fn speed_limit(&self, heading: Direction) -> (Speed, Axis) {
+        Self::least(self.machine.x.speed, self.machine.z.speed, heading)
+    }
+
+    fn finish(&mut self, curve: Curve, run: &Run, pace: Pace, built: &mut Built) {
+        let (jump_x, jump_z) = (self.machine.x.jump, self.machine.z.jump);
+        let joint = match self.heading {
+            Some(before) => {
+                let change = (run.entry.0.wrapping_sub(before.0), run.entry.1.wrapping_sub(before.1));
+                Self::least(jump_x, jump_z, change).0
+            }
+            None => Speed::MAX,
+        };
+        let feed = match pace {
+            Pace::Rapid => None,
+            Pace::Feed(feed) => Some(speed_of(feed)),
+        };
+        let (speed, axis) = run.by_axis;
+        if feed.is_some_and(|feed| feed > speed) && built.limited.is_none() {
+            built.limited = Some(Limited { axis, speed });
+        }
+        self.heading = Some(run.exit);
+        let motion = Motion {
+            curve,
+            length: run.length,
+            feed,
+            limit: speed.min(run.by_bend).max(1),
+            accel: run.accel,
+            joint,
+            start: Self::least(jump_x, jump_z, run.entry).0,
+            stop: Self::least(jump_x, jump_z, run.exit).0,
+            continues: false,
+        };
+        // at most two motions a curve: the capacity
+        let _ = built.motions.push(motion);
+    }
+}
+
+/// What a curve and the machine make of a motion.
+struct Run {
+    length: u64,
+    entry: Direction,
+    exit: Direction,
+    /// What no axis's maximum is passed at.
+    by_axis: (Speed, Axis),
+    /// What the curvature allows.
+    by_bend: Speed,
+    accel: u32,
+}
+
+/// How an arc is walked.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Split {
+    /// In one: it turns by at most half a turn.
+    Whole,
+    /// In two, joined at its half-way point, which lies at the mean of start and end radius.
+    Halves(Point),
+    /// Not at all: the half-way point is past the range of [`Length`].
+    OutOfRange,
+}
+
+/// Splits an arc that turns by more than half a turn (a full circle where the end is the start).
+///
+/// Split arcs keep the walked circle near the programmed one: moving a centre onto the bisector of two ends that lie
+/// close together on a nearly full circle would move it by up to the radius.
+pub fn split(start: Point, end: Point, centre: (i64, i64), sense: Sense) -> Split {
+    let from = |p: Point| {
+        (i128::from(i64::from(p.x.nm()).wrapping_sub(centre.0)), i128::from(i64::from(p.z.nm()).wrapping_sub(centre.1)))
+    };
+    let ((sx, sz), (ex, ez)) = (from(start), from(end));
+    let turn = |cross: i128| match sense {
+        Sense::CounterClockwise => cross,
+        Sense::Clockwise => cross.wrapping_neg(),
+    };
+    // positive for less than half a turn, zero for half a turn or none
+    let cross = turn(sz.wrapping_mul(ex).wrapping_sub(sx.wrapping_mul(ez)));
+    let along = sx.wrapping_mul(ex).wrapping_add(sz.wrapping_mul(ez));
+    if cross > 0 || (cross == 0 && along < 0) {
+        return Split::Whole;
+    }
+    let (radius_s, radius_e) = (length(sx, sz), length(ex, ez));
+    let mean = radius_s.wrapping_add(radius_e) >> 1;
+    // the better conditioned of two ways: against the sum of both radii, or square to the chord
+    let opposite = (sx.wrapping_add(ex).wrapping_neg(), sz.wrapping_add(ez).wrapping_neg());
+    let (cx, cz) = (ex.wrapping_sub(sx), ez.wrapping_sub(sz));
+    let square = match sense {
+        Sense::CounterClockwise => (cz.wrapping_neg(), cx),
+        Sense::Clockwise => (cz, cx.wrapping_neg()),
+    };
+    let direction = if length(opposite.0, opposite.1) > length(square.0, square.1) { opposite } else { square };
+    let reach = length(direction.0, direction.1);
+    let place = |centre: i64, part: i128| {
+        let off = scale(part, mean, reach.max(1));
+        Length::from_nm(to_i64(i128::from(centre).wrapping_add(off)))
+    };
+    match (place(centre.0, direction.0), place(centre.1, direction.1)) {
+        (Some(x), Some(z)) => Split::Halves(Point { x, z }),
+        _ => Split::OutOfRange,
+    }
+}
+
+fn length(x: i128, z: i128) -> i128 {
+    let square = x.wrapping_mul(x).wrapping_add(z.wrapping_mul(z));
+    i128::from(to_u64(i128::from(root_wide(square.unsigned_abs()))))
+}

@@ -1,0 +1,148 @@
+//! Look-ahead: the blocks to come and the speed at which each may be entered.
+//!
+//! Going from the last block known to the first, a block may be entered at the speed from which the next one's entry
+//! can still be met, at most at its joint's speed and at the feeds on both sides. The last block known is planned to
+//! end in standstill, so that a program that stops arriving stops the tool and breaks nothing.
+//!
+//! Braking as hard as allowed from any planned state meets every joint; a change of the override therefore needs no
+//! more than a new pass, and a feed that is suddenly too high is approached gradually.
+
+use crate::block::{Block, Motion, Speed, Work};
+use crate::governor::square;
+use heapless::Deque;
+
+/// A block to come.
+#[derive(Copy, Clone, Debug)]
+struct Planned {
+    block: Block,
+    /// Squared speed at which it is to be entered.
+    entry: u64,
+}
+
+/// The blocks to come, at most `N`.
+#[derive(Clone, Debug)]
+pub struct Lookahead<const N: usize> {
+    blocks: Deque<Planned, N>,
+    /// How many at the back have not been planned.
+    fresh: usize,
+    /// Percent of the programmed feed, planned with.
+    feed_override: u16,
+}
+
+/// Speed of a motion under an override.
+pub fn pace(motion: &Motion, feed_override: u16) -> Speed {
+    match motion.feed {
+        None => motion.limit,
+        Some(feed) => {
+            let scaled = u64::from(feed).wrapping_mul(u64::from(feed_override)) / 100;
+            crate::math::to_u32(scaled).min(motion.limit)
+        }
+    }
+}
+
+impl<const N: usize> Lookahead<N> {
+    /// None known.
+    pub const fn new() -> Self {
+        Self { blocks: Deque::new(), fresh: 0, feed_override: 100 }
+    }
+
+    /// Whether another block fits.
+    pub fn has_room(&self) -> bool {
+        !self.blocks.is_full()
+    }
+
+    /// How many blocks are known.
+    pub fn len(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// Whether none is known.
+    pub fn is_empty(&self) -> bool {
+        self.blocks.is_empty()
+    }
+
+    /// Adds a block; it is planned by the next [`plan`](Self::plan).
+    pub fn push(&mut self, block: Block) {
+        // the caller asked `has_room`; a full queue would show as a missing block, so it must not be full
+        if self.blocks.push_back(Planned { block, entry: 0 }).is_ok() {
+            self.fresh = self.fresh.wrapping_add(1);
+        }
+    }
+
+    /// Takes the next block, with the squared speed at which it may be entered.
+    pub fn pop(&mut self) -> Option<(Block, u64)> {
+        let next = self.blocks.pop_front()?;
+        self.fresh = self.fresh.min(self.blocks.len());
+        Some((next.block, next.entry))
+    }
+
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.blocks.clear();
+        self.fresh = 0;
+    }
+
+    /// The squared speed at which `motion`, the one being executed, has to end.
+    pub fn exit(&self, motion: &Motion) -> u64 {
+        match self.blocks.front() {
+            Some(Planned { block: Block { work: Work::Motion(_), .. }, entry }) => *entry,
+            _ => square(motion.stop),
+        }
+    }
+
+    /// Whether the next block is a motion, so that the one being executed need not stop.
+    pub fn continues(&self) -> bool {
+        self.blocks.front().is_some_and(|next| as_motion(&next.block).is_some())
+    }
+
+    /// Plans the entry speeds anew as far as they change. `active` is the motion being executed.
+    pub fn plan(&mut self, active: Option<&Motion>, feed_override: u16) {
+        let all = feed_override != self.feed_override;
+        if !all && self.fresh == 0 {
+            return;
+        }
+        self.feed_override = feed_override;
+        let known = self.blocks.len().saturating_sub(if all { self.blocks.len() } else { self.fresh });
+        self.fresh = 0;
+        let mut exit: Option<u64> = None;
+        let mut index = self.blocks.len();
+        while let Some(here) = index.checked_sub(1) {
+            index = here;
+            let before = match here.checked_sub(1) {
+                Some(i) => self.blocks.get(i).and_then(|p| as_motion(&p.block)).copied(),
+                None => active.copied(),
+            };
+            let Some(planned) = self.blocks.get_mut(here) else { return };
+            let Some(motion) = as_motion(&planned.block) else {
+                exit = None;
+                continue;
+            };
+            let own = pace(motion, feed_override);
+            let most = match &before {
+                Some(before) => motion.joint.min(own).min(pace(before, feed_override)),
+                None => motion.start.min(own),
+            };
+            let leave = exit.unwrap_or(square(motion.stop));
+            let entry = motion.reachable(motion.length, leave).min(square(most));
+            if entry == planned.entry && here < known {
+                return;
+            }
+            planned.entry = entry;
+            exit = Some(entry);
+        }
+    }
+}
+
+impl<const N: usize> Default for Lookahead<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The motion of a block that moves.
+pub const fn as_motion(block: &Block) -> Option<&Motion> {
+    match &block.work {
+        Work::Motion(motion) => Some(motion),
+        Work::Dwell(_) | Work::Output(_) | Work::Stop | Work::OptionalStop | Work::End => None,
+    }
+}

@@ -1,0 +1,296 @@
+//! One lathe: takes blocks, gives a tick of pulse train.
+//!
+//! A tick is a pure function of the channel's state, the commands given since the last and the blocks taken. Blocks
+//! are taken only at a tick's start and only as many as fit, so as long as the source keeps up the train does not
+//! depend on when they arrived; should the source lag, the plan ends in standstill and the lag is counted.
+
+pub mod lookahead;
+mod runner;
+
+use crate::block::{Block, Motion, Output, Speed, Work};
+use crate::config::{Machine, TICK_CLOCKS};
+use crate::math::root;
+use crate::shaper::Shaper;
+use crate::train::Event;
+use crate::units::Lattice;
+use lookahead::{Lookahead, pace};
+use runner::{Runner, Stretch};
+
+/// Blocks taken in one tick while a cycle fills the look-ahead.
+const FILL_PER_TICK: usize = 16;
+
+/// What the channel is doing.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Nothing; waits for cycle start.
+    Idle,
+    /// Cycle start was given; the look-ahead fills.
+    Filling,
+    /// Executes blocks.
+    Running,
+    /// Feed hold: brakes or stands.
+    Holding,
+    /// A programmed stop: waits for cycle start.
+    Stopped,
+    /// The program is over.
+    Ended,
+}
+
+/// What a tick did besides its events.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// What the channel is doing after the tick.
+    pub state: State,
+    /// The tick belongs to a cycle (counted in the train's hash).
+    pub in_cycle: bool,
+    /// An output that the program set at the end of this tick.
+    pub output: Option<Output>,
+    /// Line of the block being executed, 0 for none.
+    pub line: u32,
+    /// Speed along the path at the tick's end.
+    pub speed: Speed,
+}
+
+/// A motion being executed.
+#[derive(Clone, Debug)]
+struct Active {
+    motion: Motion,
+    runner: Runner,
+    /// Length covered.
+    done: u64,
+}
+
+/// What is being executed.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one exists a channel, and there is no allocation")]
+enum Current {
+    Nothing,
+    Motion(Active),
+    /// Clocks left.
+    Dwell(u64),
+}
+
+/// One lathe's interpolator, with a look-ahead of `N` blocks.
+#[derive(Clone, Debug)]
+pub struct Channel<const N: usize> {
+    state: State,
+    ahead: Lookahead<N>,
+    current: Current,
+    line: u32,
+    speed: Speed,
+    shaper: Shaper,
+    position: Lattice,
+    /// Percent, 0 to 200.
+    feed_override: u16,
+    optional_stop: bool,
+    /// The end block was taken: no more come.
+    complete: bool,
+    /// Speed below which any axis may start or stop at once.
+    rest: Speed,
+    starved: u32,
+}
+
+impl<const N: usize> Channel<N> {
+    /// A channel that stands at `position`.
+    pub fn new(machine: &Machine, position: Lattice) -> Self {
+        Self {
+            state: State::Idle,
+            ahead: Lookahead::new(),
+            current: Current::Nothing,
+            line: 0,
+            speed: 0,
+            shaper: Shaper::new(machine),
+            position,
+            feed_override: 100,
+            optional_stop: false,
+            complete: false,
+            rest: machine.x.jump.min(machine.z.jump),
+            starved: 0,
+        }
+    }
+
+    /// Starts a cycle, or goes on after a hold or a programmed stop. False where there is nothing to start.
+    pub fn start(&mut self) -> bool {
+        match self.state {
+            State::Idle | State::Ended => {
+                self.complete = false;
+                self.state = State::Filling;
+                true
+            }
+            State::Holding | State::Stopped => {
+                self.state = State::Running;
+                true
+            }
+            State::Filling | State::Running => false,
+        }
+    }
+
+    /// Feed hold: brakes along the path to standstill. False where nothing runs.
+    pub fn hold(&mut self) -> bool {
+        let runs = matches!(self.state, State::Running);
+        if runs {
+            self.state = State::Holding;
+        }
+        runs
+    }
+
+    /// Sets the feed override, percent; more than 200 counts as 200.
+    pub fn set_feed_override(&mut self, percent: u16) {
+        self.feed_override = percent.min(200);
+    }
+
+    /// Whether optional stops stop.
+    pub fn set_optional_stop(&mut self, on: bool) {
+        self.optional_stop = on;
+    }
+
+    /// What the channel is doing.
+    pub const fn state(&self) -> State {
+        self.state
+    }
+
+    /// Where the last pulse planned leads.
+    pub const fn position(&self) -> Lattice {
+        self.position
+    }
+
+    /// How often a block was wanted and none was there.
+    pub const fn starved(&self) -> u32 {
+        self.starved
+    }
+
+    /// Makes one tick: takes blocks from `source`, gives events to `out`.
+    pub fn tick(&mut self, source: &mut impl FnMut() -> Option<Block>, out: &mut impl FnMut(Event)) -> Report {
+        let in_cycle = matches!(self.state, State::Running | State::Holding | State::Stopped);
+        self.take(source);
+        let mut output = None;
+        if in_cycle {
+            output = self.run(out);
+        }
+        self.shaper.end_tick(out);
+        if matches!(self.state, State::Filling) && (self.complete || !self.ahead.has_room()) {
+            self.state = State::Running;
+        }
+        Report { state: self.state, in_cycle, output, line: self.line, speed: self.speed }
+    }
+
+    /// Takes blocks and plans.
+    fn take(&mut self, source: &mut impl FnMut() -> Option<Block>) {
+        if matches!(self.state, State::Idle | State::Ended) {
+            return;
+        }
+        let mut taken = 0_usize;
+        while !self.complete && self.ahead.has_room() && taken < FILL_PER_TICK {
+            let Some(block) = source() else {
+                if !matches!(self.state, State::Filling) {
+                    self.starved = self.starved.saturating_add(1);
+                }
+                break;
+            };
+            self.complete = matches!(block.work, Work::End);
+            self.ahead.push(block);
+            taken = taken.wrapping_add(1);
+        }
+        let active = match &self.current {
+            Current::Motion(active) => Some(&active.motion),
+            Current::Nothing | Current::Dwell(_) => None,
+        };
+        self.ahead.plan(active, self.feed_override);
+    }
+
+    /// Executes for one tick.
+    fn run(&mut self, out: &mut impl FnMut(Event)) -> Option<Output> {
+        let mut clock = 0_u32;
+        while clock < TICK_CLOCKS && matches!(self.state, State::Running | State::Holding) {
+            let left = TICK_CLOCKS.wrapping_sub(clock);
+            match &mut self.current {
+                Current::Motion(_) => match self.go(clock, out) {
+                    Some(used) => clock = clock.wrapping_add(used),
+                    None => break,
+                },
+                Current::Dwell(_) if matches!(self.state, State::Holding) => break,
+                Current::Dwell(clocks) => {
+                    let used = crate::math::to_u32((*clocks).min(u64::from(left)));
+                    *clocks = clocks.wrapping_sub(u64::from(used));
+                    clock = clock.wrapping_add(used);
+                    if *clocks == 0 {
+                        self.current = Current::Nothing;
+                    }
+                }
+                Current::Nothing => {
+                    if matches!(self.state, State::Holding) {
+                        break;
+                    }
+                    let Some((block, entry)) = self.ahead.pop() else { break };
+                    self.line = block.line;
+                    match block.work {
+                        Work::Motion(motion) => self.begin(motion, entry),
+                        Work::Dwell(ticks) => {
+                            self.current = Current::Dwell(u64::from(ticks).wrapping_mul(u64::from(TICK_CLOCKS)));
+                        }
+                        Work::Output(output) => return Some(output),
+                        Work::Stop => self.state = State::Stopped,
+                        Work::OptionalStop if self.optional_stop => self.state = State::Stopped,
+                        Work::OptionalStop => {}
+                        Work::End => {
+                            self.state = State::Ended;
+                            self.line = 0;
+                        }
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// Begins a motion: from standstill at its start speed, else at the speed that the one before left with.
+    fn begin(&mut self, motion: Motion, entry: u64) {
+        self.speed = if self.speed == 0 {
+            root(entry)
+        } else {
+            // what braking could not shed of a lowered feed goes on; what the machine can't take does not
+            self.speed.min(motion.joint).min(motion.limit)
+        };
+        let runner = Runner::new(&motion.curve, motion.length);
+        self.current = Current::Motion(Active { motion, runner, done: 0 });
+    }
+
+    /// Advances the motion from `clock` on; the clocks used, or `None` where it stands for the rest of the tick.
+    fn go(&mut self, clock: u32, out: &mut impl FnMut(Event)) -> Option<u32> {
+        let holding = matches!(self.state, State::Holding);
+        let Current::Motion(active) = &mut self.current else { return None };
+        let target = if holding { 0 } else { pace(&active.motion, self.feed_override) };
+        if self.speed == 0 {
+            if target == 0 {
+                return None;
+            }
+            self.speed = target.min(self.rest).max(1);
+        } else if target == 0 && self.speed <= self.rest {
+            self.speed = 0;
+            return None;
+        }
+        let left = active.motion.length.saturating_sub(active.done);
+        let exit = self.ahead.exit(&active.motion);
+        let budget = TICK_CLOCKS.wrapping_sub(clock);
+        let advance = active.motion.advance(self.speed, left, exit, target, budget);
+        active.done = active.done.saturating_add(advance.length);
+        self.speed = advance.speed;
+        let (shaper, position) = (&mut self.shaper, &mut self.position);
+        let mut step = |at: u32, step: crate::curve::Step| {
+            shaper.step(at, step.x, step.z, out);
+            position.x = position.x.wrapping_add(i32::from(step.x));
+            position.z = position.z.wrapping_add(i32::from(step.z));
+        };
+        let stretch = Stretch { from: clock, clocks: advance.clocks };
+        active.runner.advance(active.done, stretch, &mut step);
+        if advance.done {
+            active.runner.finish(clock.wrapping_add(advance.clocks), &mut step);
+            let goes_on = self.ahead.continues();
+            self.current = Current::Nothing;
+            if !goes_on {
+                self.speed = 0;
+            }
+        }
+        Some(advance.clocks)
+    }
+}

@@ -1,0 +1,166 @@
+//! Circular arc on a lattice whose two pulse sizes may differ: an axis-parallel conic with integer coefficients.
+//!
+//! With coordinates in pulses from the arc's start the curve is `F(x, z) = a x^2 + b z^2 - c x - d z = 0`, where
+//! `a : b` is the ratio of the squared pulse sizes and `(c / 2a, d / 2b)` the centre. `F` passes through the start
+//! exactly; the rounded end lies within a 2^-17th of a pulse of it. `F` grows with X on the upper half and with Z on
+//! the right half.
+//!
+//! **Octants** are numbered counter-clockwise from the Z axis and separated, in turn, by the points where both axes
+//! take the same number of pulses per unit of curve (odd borders, here called *tangent points*) and by the extremes
+//! of the curve (even borders):
+//!
+//! ```text
+//!            X          octant   major  gradient of F
+//!        3 \ 2 | 1 /    0, 7, 3, 4   X  steeper in Z
+//!       4 ---- + ---- 0 ..
+//!        5 / 6 | 7 \    1, 2, 5, 6   Z  steeper in X
+//! ```
+//!
+//! An arc here turns by at most half a turn (longer ones are two blocks), so it visits at most six octants and four
+//! *zones* (pairs of octants with one major axis).
+
+use super::proportion::Proportion;
+use crate::units::{Axis, Sense};
+
+/// Largest number of octants that an arc visits.
+pub const MAX_PIECES: usize = 6;
+
+/// A prepared arc of at most half a turn.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Arc {
+    /// Weight of X: `F = a x^2 + b z^2 - c x - d z`.
+    pub(crate) a: i64,
+    /// Weight of Z.
+    pub(crate) b: i64,
+    /// `2 a` times the centre's X.
+    pub(crate) c: i64,
+    /// `2 b` times the centre's Z.
+    pub(crate) d: i64,
+    /// Steps of the major axis inside each octant visited.
+    pub(crate) steps: [u32; MAX_PIECES],
+    /// From the last point of an octant to the first of the next: X, Z pulses.
+    pub(crate) joints: [(i8, i8); MAX_PIECES - 1],
+    /// First octant.
+    pub(crate) octant: u8,
+    /// Octants visited.
+    pub(crate) pieces: u8,
+    /// Sense of travel.
+    pub(crate) sense: Sense,
+    /// Where the tool is on the timeline.
+    pub(crate) timeline: Timeline,
+    /// The end, pulses.
+    pub(crate) end: (i32, i32),
+}
+
+/// What turns path length into the continuous coordinate of the major axis.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Timeline {
+    /// Radius, nm with 12 fraction bits.
+    pub(crate) radius: u64,
+    /// From length along the arc to angle turned, 30 fraction bits.
+    pub(crate) angle: Proportion,
+    /// Radius in pulses of X and of Z, 16 fraction bits.
+    pub(crate) radius_pulses: [u64; 2],
+    /// Centre in pulses from the start, X and Z, 16 fraction bits.
+    pub(crate) centre: [i64; 2],
+    /// Angle of the start from the middle of its zone, against the travel negative, 30 fraction bits.
+    pub(crate) start_angle: i32,
+    /// Angle from the middle of a zone to its end: zones with major X, zones with major Z; 30 fraction bits.
+    pub(crate) half_width: [i32; 2],
+    /// Length of the whole arc, nm with 12 fraction bits.
+    pub(crate) length: u64,
+}
+
+impl Arc {
+    /// Length of the walked arc, nm with 12 fraction bits.
+    pub const fn length(&self) -> u64 {
+        self.timeline.length
+    }
+
+    /// Radius of the walked arc, nm with 12 fraction bits.
+    pub const fn radius(&self) -> u64 {
+        self.timeline.radius
+    }
+
+    /// The end, X then Z, pulses from the start.
+    pub const fn end(&self) -> (i32, i32) {
+        self.end
+    }
+
+    /// The octant after `octant` in the sense of travel.
+    pub(crate) const fn octant_after(octant: u8, sense: Sense) -> u8 {
+        match sense {
+            Sense::CounterClockwise => octant.wrapping_add(1) & 7,
+            Sense::Clockwise => octant.wrapping_add(7) & 7,
+        }
+    }
+
+    /// The octant before `octant` in the sense of travel.
+    pub(crate) const fn octant_before(octant: u8, sense: Sense) -> u8 {
+        Self::octant_after(octant, sense.mirrored())
+    }
+
+    /// Whether the border that travel meets at the end of `octant` is a tangent point, where the major axis changes.
+    pub(crate) const fn ends_at_tangent(octant: u8, sense: Sense) -> bool {
+        match sense {
+            Sense::CounterClockwise => octant & 1 == 0,
+            Sense::Clockwise => octant & 1 == 1,
+        }
+    }
+
+    /// The axis that steps every time in `octant`.
+    pub(crate) const fn major(octant: u8) -> Axis {
+        match octant & 3 {
+            0 | 3 => Axis::X,
+            _ => Axis::Z,
+        }
+    }
+
+    /// Signs of travel in `octant`: X, Z.
+    pub(crate) const fn signs(octant: u8, sense: Sense) -> (i8, i8) {
+        // counter-clockwise X rises on the right half (octants 6, 7, 0, 1), Z falls on the upper half (0..=3)
+        let x = if octant.wrapping_add(2) & 7 < 4 { 1 } else { -1 };
+        let z = if octant < 4 { -1 } else { 1 };
+        match sense {
+            Sense::CounterClockwise => (x, z),
+            Sense::Clockwise => (-x, -z),
+        }
+    }
+
+    /// `F` at a lattice point, modulo 2^64: exact wherever the true value fits, which it does near the curve.
+    pub(crate) const fn residual(&self, x: i32, z: i32) -> i64 {
+        let (x, z) = (x as i64, z as i64);
+        let across = self.a.wrapping_mul(x).wrapping_sub(self.c).wrapping_mul(x);
+        let along = self.b.wrapping_mul(z).wrapping_sub(self.d).wrapping_mul(z);
+        across.wrapping_add(along)
+    }
+
+    /// The in-between point on the way over a gap from `from` to `to`, two lattice points that are not neighbours:
+    /// of the neighbours of `from` that come nearer to `to`, the one nearest the curve.
+    pub(crate) fn bridge(&self, from: (i32, i32), to: (i32, i32)) -> (i32, i32) {
+        let (gap_x, gap_z) = (to.0.wrapping_sub(from.0), to.1.wrapping_sub(from.1));
+        let far = gap_x.unsigned_abs().max(gap_z.unsigned_abs());
+        if far <= 1 {
+            return to;
+        }
+        let mut best = to;
+        let mut least = u64::MAX;
+        let mut x = -1_i32;
+        while x <= 1 {
+            let mut z = -1_i32;
+            while z <= 1 {
+                let left_x = gap_x.wrapping_sub(x).unsigned_abs();
+                let left_z = gap_z.wrapping_sub(z).unsigned_abs();
+                let point = (from.0.wrapping_add(x), from.1.wrapping_add(z));
+                let off = self.residual(point.0, point.1).unsigned_abs();
+                if left_x.max(left_z) < far && off < least {
+                    least = off;
+                    best = point;
+                }
+                z = z.wrapping_add(1);
+            }
+            x = x.wrapping_add(1);
+        }
+        best
+    }
+}

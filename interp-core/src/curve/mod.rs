@@ -1,0 +1,32 @@
+//! Where a block goes: curves on the pulse lattice and the walkers that enumerate their steps.
+//!
+//! A curve is prepared in the background (square roots, divisions, 128 bits) and walked in the foreground, where a
+//! step costs a few additions. Coordinates are pulses relative to the curve's start, so that every curve begins at
+//! (0, 0).
+//!
+//! A walker tells which step comes next; the curve's *timeline* tells when: it gives the continuous coordinate of
+//! the major axis as a function of the path length, and a step is due where that coordinate reaches the next
+//! lattice line. So the tangential feed is even at every direction, and no error adds up along the curve.
+
+pub mod arc;
+pub mod arc_walker;
+pub mod line;
+pub mod prepare_arc;
+pub mod proportion;
+
+/// One step of a walker: -1, 0 or 1 pulse of each axis, at least one of them not 0.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Step {
+    /// Pulses of X.
+    pub x: i8,
+    /// Pulses of Z.
+    pub z: i8,
+}
+
+/// Enumerates the steps of one curve, both ways: `previous` undoes `next` exactly.
+pub trait Walker {
+    /// The next step, or `None` at the end.
+    fn next_step(&mut self) -> Option<Step>;
+    /// The step that led here, undone, or `None` at the start.
+    fn previous_step(&mut self) -> Option<Step>;
+}

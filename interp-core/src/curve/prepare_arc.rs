@@ -1,0 +1,406 @@
+//! Turns two lattice points and a centre into an [`Arc`]: coefficients, octants, joints and timeline.
+//!
+//! The centre is moved along the chord onto the perpendicular bisector of the two ends, so the walked circle passes
+//! through both. In pulses that circle is `a x^2 + b z^2 - c x - d z = 0`. `a : b` is the exact ratio of the squared
+//! pulse sizes where 44 bits hold it, else the nearest one; `c` and `d` are rounded to a 2^-17th of a pulse or finer.
+//! Everything here may take 128 bits: it runs in the background, once a block.
+
+use super::arc::{Arc, MAX_PIECES, Timeline};
+use super::proportion::Proportion;
+use crate::math::{
+    HALF_TURN_Q60, RADIAN_Q30, angle_of, cosine_from_sine, root_wide, scale, sine, to_i32, to_i64, to_u64,
+};
+use crate::units::{Axis, Lattice, PulseSize, Sense};
+
+/// What the two pulse sizes mean for every arc of a machine.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Metric {
+    x: PulseSize,
+    z: PulseSize,
+    /// Pulse sizes over their greatest common measure.
+    across: i128,
+    along: i128,
+    /// Angle from the middle to the end of a zone with major X, 60 fraction bits.
+    half_width_x: i64,
+}
+
+/// A curve of an arc's two rounded ends.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Prepared {
+    /// The ends are the same lattice point: no pulse.
+    Nothing,
+    /// An arc, and how it turns.
+    Arc(Arc, Turn),
+    /// So short or so small that the arc is its chord, to within a pulse.
+    Chord,
+}
+
+/// Angles of an arc, radians with 60 fraction bits.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Turn {
+    /// Angle of the start from the Z axis, counter-clockwise.
+    pub start: i64,
+    /// How far it turns, not negative.
+    pub sweep: i64,
+    /// Which way.
+    pub sense: Sense,
+}
+
+impl Turn {
+    fn along(&self, angle: i64) -> i64 {
+        match self.sense {
+            Sense::CounterClockwise => angle,
+            Sense::Clockwise => angle.wrapping_neg(),
+        }
+    }
+
+    /// Direction of travel after turning by `swept`: X and Z parts of a unit vector, 30 fraction bits.
+    pub fn heading(&self, swept: i64) -> (i64, i64) {
+        let angle = self.start.wrapping_add(self.along(swept));
+        let (sine, cosine) = unit(angle);
+        (self.along(cosine), self.along(sine.wrapping_neg()))
+    }
+
+    /// The largest X part and the largest Z part that the direction of travel has anywhere on the arc.
+    pub fn extent(&self) -> (i64, i64) {
+        let (first, last) = (self.heading(0), self.heading(self.sweep));
+        let mut x = first.0.abs().max(last.0.abs());
+        let mut z = first.1.abs().max(last.1.abs());
+        for quarter in -4..=4_i64 {
+            let off = i128::from(quarter.wrapping_mul(HALF_TURN_Q60 >> 1)).wrapping_sub(i128::from(self.start));
+            let swept = if self.sense == Sense::CounterClockwise { off } else { off.wrapping_neg() };
+            if (0..=i128::from(self.sweep)).contains(&swept) {
+                if quarter & 1 == 0 { x = RADIAN_Q30 } else { z = RADIAN_Q30 }
+            }
+        }
+        (x, z)
+    }
+}
+
+/// Sine and cosine of any angle (60 fraction bits), with 30 fraction bits.
+fn unit(angle: i64) -> (i64, i64) {
+    let quarter = HALF_TURN_Q60 >> 1;
+    let quarters = angle.wrapping_add(quarter >> 1).checked_div_euclid(quarter).unwrap_or(0);
+    let rest = angle.wrapping_sub(quarters.wrapping_mul(quarter)) >> 30;
+    let s = sine(rest);
+    let c = cosine_from_sine(s.abs());
+    match quarters & 3 {
+        0 => (s, c),
+        1 => (c, s.wrapping_neg()),
+        2 => (s.wrapping_neg(), c.wrapping_neg()),
+        _ => (c.wrapping_neg(), s),
+    }
+}
+
+impl Metric {
+    /// The metric of two pulse sizes.
+    pub fn new(x: PulseSize, z: PulseSize) -> Self {
+        let across = u64::from(x.numerator()).wrapping_mul(u64::from(z.denominator()));
+        let along = u64::from(z.numerator()).wrapping_mul(u64::from(x.denominator()));
+        let (mut p, mut q) = (across, along);
+        while let Some(rest) = p.checked_rem(q) {
+            (p, q) = (q, rest);
+        }
+        let across = i128::from(across.checked_div(p).unwrap_or(1));
+        let along = i128::from(along.checked_div(p).unwrap_or(1));
+        Self { x, z, across, along, half_width_x: angle_of(across, along) }
+    }
+
+    /// Coordinate of a lattice line, nm with 12 fraction bits, rounded to nearest.
+    fn place(pulse: PulseSize, pulses: i32) -> i128 {
+        scale(i128::from(pulses), i128::from(pulse.numerator()) << 12, i128::from(pulse.denominator()))
+    }
+
+    /// Weights of X and Z for arcs of `radius` (nm, 12 fraction bits): as large as 64 bits bear.
+    fn weights(&self, radius: i128) -> (i128, i128) {
+        let (x2, z2) = (self.across.wrapping_mul(self.across), self.along.wrapping_mul(self.along));
+        let largest = x2.max(z2);
+        let coarser = if self.across > self.along { self.x } else { self.z };
+        let size = i128::from(coarser.numerator()) << 12;
+        let pulses = scale(radius, i128::from(coarser.denominator()), size).saturating_add(2);
+        let most = (1_i128 << 56).checked_div(pulses).unwrap_or(1).min(1 << 44);
+        match most.checked_div(largest) {
+            Some(times) if times >= 4096 => (x2.wrapping_mul(times), z2.wrapping_mul(times)),
+            _ => (scale(x2, most, largest).max(1), scale(z2, most, largest).max(1)),
+        }
+    }
+
+    /// Prepares the arc from `start` to `end` about `centre` (X, Z in nm) that turns by at most half a turn.
+    pub fn arc(&self, start: Lattice, end: Lattice, centre: (i64, i64), sense: Sense) -> Prepared {
+        let delta = (end.x.wrapping_sub(start.x), end.z.wrapping_sub(start.z));
+        if delta == (0, 0) {
+            return Prepared::Nothing;
+        }
+        let off_x = Self::place(self.x, start.x).wrapping_sub(i128::from(centre.0) << 12);
+        let off_z = Self::place(self.z, start.z).wrapping_sub(i128::from(centre.1) << 12);
+        let square = off_x.saturating_mul(off_x).saturating_add(off_z.saturating_mul(off_z));
+        let radius = i128::from(root_wide(square.unsigned_abs()));
+        if delta.0.abs() <= 1 && delta.1.abs() <= 1 {
+            let coarser = if self.across > self.along { self.x } else { self.z };
+            if radius > Self::place(coarser, 3) {
+                return Prepared::Chord;
+            }
+        }
+        match Preparation::new(self, start, delta, centre, radius, sense).and_then(|p| p.arc()) {
+            Some((arc, turn)) => Prepared::Arc(arc, turn),
+            None => Prepared::Chord,
+        }
+    }
+}
+
+/// The conic of one arc, on the way to an [`Arc`].
+struct Preparation<'m> {
+    metric: &'m Metric,
+    sense: Sense,
+    end: (i32, i32),
+    a: i128,
+    b: i128,
+    c: i128,
+    d: i128,
+    /// Gradient of `F`, both components, at the tangent points.
+    tangent: i128,
+}
+
+impl<'m> Preparation<'m> {
+    fn new(
+        metric: &'m Metric,
+        start: Lattice,
+        end: (i32, i32),
+        centre: (i64, i64),
+        radius: i128,
+        sense: Sense,
+    ) -> Option<Self> {
+        let (a, b) = metric.weights(radius);
+        // 2 a (centre / pulse - start)
+        let about = |pulse: PulseSize, weight: i128, centre: i64, start: i32| {
+            let (num, den) = (i128::from(pulse.numerator()), i128::from(pulse.denominator()));
+            let off = i128::from(centre).wrapping_mul(den).wrapping_sub(i128::from(start).wrapping_mul(num));
+            scale(weight.wrapping_mul(2), off, num)
+        };
+        let mut c = about(metric.x, a, centre.0, start.x);
+        let mut d = about(metric.z, b, centre.1, start.z);
+        // move the centre along the chord until F is zero at the end
+        let (dx, dz) = (i128::from(end.0), i128::from(end.1));
+        let (reach_x, reach_z) = (a.wrapping_mul(dx), b.wrapping_mul(dz));
+        let chord = reach_x.wrapping_mul(dx).wrapping_add(reach_z.wrapping_mul(dz));
+        let miss = chord.wrapping_sub(c.wrapping_mul(dx)).wrapping_sub(d.wrapping_mul(dz));
+        let bits = 128_u32.wrapping_sub(miss.unsigned_abs().leading_zeros());
+        let shift = bits.saturating_sub(60);
+        c = c.wrapping_add(scale(reach_x, miss >> shift, (chord >> shift).max(1)));
+        d = d.wrapping_add(scale(reach_z, miss >> shift, (chord >> shift).max(1)));
+        // where |dF/dx| = |dF/dz| = g on the curve: g^2 = (b c^2 + a d^2) / (a + b)
+        let longest = c.unsigned_abs().max(d.unsigned_abs());
+        let spare = 128_u32.wrapping_sub(longest.leading_zeros()).saturating_sub(40);
+        let (cs, ds) = (c >> spare, d >> spare);
+        let sum = b.saturating_mul(cs.wrapping_mul(cs)).saturating_add(a.saturating_mul(ds.wrapping_mul(ds)));
+        let square = sum.checked_div(a.wrapping_add(b))?;
+        let tangent = i128::from(root_wide(square.unsigned_abs())) << spare;
+        (tangent > 0).then_some(Self { metric, sense, end, a, b, c, d, tangent })
+    }
+
+    /// Gradient of `F` at a lattice point: X, Z.
+    fn gradient(&self, x: i32, z: i32) -> (i128, i128) {
+        let along_x = self.a.wrapping_mul(2).wrapping_mul(i128::from(x)).wrapping_sub(self.c);
+        let along_z = self.b.wrapping_mul(2).wrapping_mul(i128::from(z)).wrapping_sub(self.d);
+        (along_x, along_z)
+    }
+
+    /// Octant of a gradient; on a border the one that `sense` enters.
+    fn octant(gradient: (i128, i128), sense: Sense) -> u8 {
+        let counter_clockwise = |x: i128, z: i128| {
+            if x >= 0 && z > 0 {
+                u8::from(x >= z)
+            } else if x > 0 {
+                2_u8.wrapping_add(u8::from(z.wrapping_neg() >= x))
+            } else if z < 0 {
+                4_u8.wrapping_add(u8::from(x <= z))
+            } else {
+                6_u8.wrapping_add(u8::from(z >= x.wrapping_neg()))
+            }
+        };
+        match sense {
+            Sense::CounterClockwise => counter_clockwise(gradient.0, gradient.1),
+            Sense::Clockwise => 7_u8.wrapping_sub(counter_clockwise(gradient.0.wrapping_neg(), gradient.1)),
+        }
+    }
+
+    /// The border that travel meets at the end of `octant`, on the octant's major axis, as numerator and
+    /// denominator of a coordinate.
+    fn border(&self, octant: u8, axis: Axis, tangent: bool) -> (i128, i128) {
+        let (centre, weight, positive) = match axis {
+            Axis::X => (self.c, self.a, octant < 4),
+            Axis::Z => (self.d, self.b, octant.wrapping_add(2) & 7 < 4),
+        };
+        let off = match (tangent, positive) {
+            (false, _) => 0,
+            (true, true) => self.tangent,
+            (true, false) => self.tangent.wrapping_neg(),
+        };
+        (centre.wrapping_add(off), weight.wrapping_mul(2))
+    }
+
+    /// The lattice line of the minor axis nearest to the curve at `major`, half toward plus infinity.
+    fn minor_at(&self, octant: u8, major: i32) -> i32 {
+        let m = i128::from(major);
+        let (am, cm, an, cn, above) = match Arc::major(octant) {
+            Axis::X => (self.a, self.c, self.b, self.d, octant.wrapping_add(2) & 7 < 4),
+            Axis::Z => (self.b, self.d, self.a, self.c, octant < 4),
+        };
+        // an n^2 - cn n + (am m^2 - cm m) = 0, so 2 an n - cn = +- root(cn^2 - 4 an (am m^2 - cm m))
+        let rest = am.wrapping_mul(m).wrapping_sub(cm).wrapping_mul(m);
+        let square = cn.wrapping_mul(cn).wrapping_sub(an.wrapping_mul(4).wrapping_mul(rest)).max(0).unsigned_abs();
+        let floor = root_wide(square);
+        let exact = u128::from(floor).wrapping_mul(u128::from(floor)) == square;
+        let gradient = i128::from(floor);
+        // floor(n + 1/2); a root cut off must be cut toward minus infinity
+        let top =
+            if above { cn.wrapping_add(gradient) } else { cn.wrapping_sub(gradient).wrapping_sub(i128::from(!exact)) };
+        let doubled = an.wrapping_mul(2);
+        to_i32(to_i64(top.wrapping_add(an).checked_div_euclid(doubled).unwrap_or(0)))
+    }
+
+    fn arc(&self) -> Option<(Arc, Turn)> {
+        let first = Self::octant(self.gradient(0, 0), self.sense);
+        // the end belongs to the octant that it leaves: the one that the opposite sense would enter
+        let last = Self::octant(self.gradient(self.end.0, self.end.1), self.sense.mirrored());
+        let turns = match self.sense {
+            Sense::CounterClockwise => last.wrapping_sub(first) & 7,
+            Sense::Clockwise => first.wrapping_sub(last) & 7,
+        };
+        if usize::from(turns) >= MAX_PIECES {
+            return None;
+        }
+        let (timeline, turn) = self.timeline(first)?;
+        let mut arc = Arc {
+            a: to_i64(self.a),
+            b: to_i64(self.b),
+            c: to_i64(self.c),
+            d: to_i64(self.d),
+            steps: [0; MAX_PIECES],
+            joints: [(0, 0); MAX_PIECES - 1],
+            octant: first,
+            pieces: turns.wrapping_add(1),
+            sense: self.sense,
+            timeline,
+            end: self.end,
+        };
+        self.enumerate(&mut arc).then_some((arc, turn))
+    }
+
+    /// Counts the lattice points of every octant visited. False where they do not lead to the end.
+    fn enumerate(&self, arc: &mut Arc) -> bool {
+        let mut at = (0_i32, 0_i32);
+        let mut octant = arc.octant;
+        for piece in 0..arc.pieces {
+            let axis = Arc::major(octant);
+            let (sign_x, sign_z) = Arc::signs(octant, self.sense);
+            let (sign, here, end) = match axis {
+                Axis::X => (sign_x, at.0, self.end.0),
+                Axis::Z => (sign_z, at.1, self.end.1),
+            };
+            let final_piece = piece.wrapping_add(1) == arc.pieces;
+            let last = if final_piece {
+                end
+            } else {
+                let (num, den) = self.border(octant, axis, Arc::ends_at_tangent(octant, self.sense));
+                Self::before(num, den, sign)
+            };
+            // the first lattice line of this octant
+            let (from, enters) = if piece == 0 {
+                (here, false)
+            } else {
+                let earlier = Arc::octant_before(octant, self.sense);
+                let tangent = Arc::ends_at_tangent(earlier, self.sense);
+                let (num, den) = self.border(earlier, axis, tangent);
+                let reached = Self::before(num, den, -sign);
+                // a point on an extreme belongs to the octant before it
+                let on_border = i128::from(reached).wrapping_mul(den) == num;
+                let skip = if !tangent && on_border { i32::from(sign) } else { 0 };
+                (reached.wrapping_add(skip), true)
+            };
+            let steps = last.wrapping_sub(from).wrapping_mul(i32::from(sign));
+            if steps >= 0 || (final_piece && enters) {
+                if enters {
+                    let to = match (steps >= 0, axis) {
+                        (false, _) => self.end,
+                        (true, Axis::X) => (from, self.minor_at(octant, from)),
+                        (true, Axis::Z) => (self.minor_at(octant, from), from),
+                    };
+                    let joint = (i8::try_from(to.0.wrapping_sub(at.0)), i8::try_from(to.1.wrapping_sub(at.1)));
+                    let (Ok(x), Ok(z)) = joint else { return false };
+                    if let Some(slot) = arc.joints.get_mut(usize::from(piece).wrapping_sub(1)) {
+                        *slot = (x, z);
+                    }
+                    at = to;
+                }
+                if let (Some(slot), true) = (arc.steps.get_mut(usize::from(piece)), steps > 0) {
+                    *slot = steps.unsigned_abs();
+                    let minor = self.minor_at(octant, last);
+                    at = match axis {
+                        Axis::X => (last, minor),
+                        Axis::Z => (minor, last),
+                    };
+                }
+            } else if final_piece {
+                return false;
+            }
+            octant = Arc::octant_after(octant, self.sense);
+        }
+        at == self.end
+    }
+
+    /// The last lattice line before `num / den` when travelling with `sign`, or on it.
+    fn before(num: i128, den: i128, sign: i8) -> i32 {
+        let floor = num.checked_div_euclid(den).unwrap_or(0);
+        let line = if sign > 0 || floor.wrapping_mul(den) == num { floor } else { floor.wrapping_add(1) };
+        to_i32(to_i64(line))
+    }
+
+    fn timeline(&self, octant: u8) -> Option<(Timeline, Turn)> {
+        let metric = self.metric;
+        // X : Z of the radius vector in mm is (gradient x / pulse x) : (gradient z / pulse z)
+        let angle = |(x, z): (i128, i128)| angle_of(z.wrapping_mul(metric.across), x.wrapping_mul(metric.along));
+        let start = angle(self.gradient(0, 0));
+        let stop = angle(self.gradient(self.end.0, self.end.1));
+        let whole = i128::from(HALF_TURN_Q60).wrapping_mul(2);
+        let travel: i128 = match self.sense {
+            Sense::CounterClockwise => 1,
+            Sense::Clockwise => -1,
+        };
+        let swept = i128::from(stop).wrapping_sub(i128::from(start)).wrapping_mul(travel);
+        let sweep = swept.checked_rem_euclid(whole)?;
+        let span = |pulse: PulseSize, centre: i128, weight: i128| {
+            let den = weight.wrapping_mul(2).wrapping_mul(i128::from(pulse.denominator()));
+            scale(centre, i128::from(pulse.numerator()) << 12, den)
+        };
+        let (x, z) = (span(metric.x, self.c, self.a), span(metric.z, self.d, self.b));
+        let square = x.saturating_mul(x).saturating_add(z.saturating_mul(z));
+        let radius = root_wide(square.unsigned_abs());
+        if radius == 0 {
+            return None;
+        }
+        let length = to_u64(i128::from(radius).wrapping_mul(sweep) >> 60);
+        let middle = i128::from(octant.wrapping_add(1) >> 1 & 3).wrapping_mul(i128::from(HALF_TURN_Q60) >> 1);
+        let mut off = i128::from(start).wrapping_sub(middle).checked_rem_euclid(whole)?;
+        if off > i128::from(HALF_TURN_Q60) {
+            off = off.wrapping_sub(whole);
+        }
+        let in_pulses = |pulse: PulseSize| {
+            to_u64(scale(i128::from(radius), i128::from(pulse.denominator()) << 4, i128::from(pulse.numerator())))
+        };
+        let quarter = HALF_TURN_Q60 >> 1;
+        let timeline = Timeline {
+            radius,
+            angle: Proportion::new(1 << 30, radius, length),
+            radius_pulses: [in_pulses(metric.x), in_pulses(metric.z)],
+            centre: [
+                to_i64(scale(self.c, 1 << 16, self.a.wrapping_mul(2))),
+                to_i64(scale(self.d, 1 << 16, self.b.wrapping_mul(2))),
+            ],
+            start_angle: to_i32(to_i64(off.wrapping_mul(travel) >> 30)),
+            half_width: [to_i32(metric.half_width_x >> 30), to_i32(quarter.wrapping_sub(metric.half_width_x) >> 30)],
+            length,
+        };
+        Some((timeline, Turn { start, sweep: to_i64(sweep), sense: self.sense }))
+    }
+}

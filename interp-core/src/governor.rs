@@ -1,0 +1,192 @@
+//! The feed governor: how far the path advances, and at what speed, before anything is interpolated.
+//!
+//! Acceleration is planned along the path and therefore never bends it. Speeds are nm a tick, squared speeds
+//! nm^2 a tick^2 with 24 fraction bits, lengths nm with 12 fraction bits.
+//!
+//! On a line the acceleration is constant. On an arc the axes also need `v^2 / R` to turn, so what is left along the
+//! path is `sqrt(a^2 - (v^2 / R)^2)`; with `w = v^2` braking then follows `w(s) = a R sin(2 s / R + asin(w_end / a R))`,
+//! s being the distance to the end. (Insert it: dw/ds = 2 sqrt(a^2 - (w/R)^2).) So the vector sum of both never
+//! passes the axis's acceleration.
+
+use crate::block::{Curve, Motion, Speed};
+use crate::config::TICK_CLOCKS;
+use crate::math::{QUARTER_Q30, RADIAN_Q30, cosine_from_sine, root, sine, to_u32};
+
+/// A squared speed that stands for no limit.
+pub const UNLIMITED: u64 = 1 << 62;
+
+/// What the governor decides for a stretch of time.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Advance {
+    /// Length of path covered, nm with 12 fraction bits.
+    pub length: u64,
+    /// Clocks that it takes.
+    pub clocks: u32,
+    /// Speed at its end.
+    pub speed: Speed,
+    /// The motion is over.
+    pub done: bool,
+}
+
+/// The square of a speed.
+pub const fn square(speed: Speed) -> u64 {
+    (speed as u64).wrapping_mul(speed as u64)
+}
+
+/// `value * clocks / TICK_CLOCKS`: what a rate a tick makes of a part of a tick.
+const fn part(value: u32, clocks: u32) -> u32 {
+    if clocks >= TICK_CLOCKS {
+        return value;
+    }
+    to_u32((value as u64).wrapping_mul(clocks as u64) / TICK_CLOCKS as u64)
+}
+
+impl Motion {
+    /// `a R`, the squared speed at which an arc's curvature takes all acceleration, where that matters: `None` on
+    /// lines and on arcs so wide that turning takes less than a 64th of the acceleration at the largest speed.
+    fn full_bend(&self) -> Option<(u64, u64)> {
+        let Curve::Arc(arc) = &self.curve else { return None };
+        let radius = arc.radius();
+        let bend = u64::from(self.accel).saturating_mul(radius);
+        (bend >> 6 < square(self.limit)).then_some((bend, radius))
+    }
+
+    /// The largest squared speed `distance` before the end from which `exit` (squared) can be met.
+    pub fn reachable(&self, distance: u64, exit: u64) -> u64 {
+        match self.full_bend() {
+            None => {
+                // on wide arcs the 8192th part that turning may take at most
+                let accel = match self.curve {
+                    Curve::Line(..) => self.accel,
+                    Curve::Arc(_) => self.accel.wrapping_sub(self.accel >> 12),
+                };
+                let gain = distance.saturating_mul(u64::from(accel).wrapping_mul(2));
+                exit.saturating_add(gain).min(UNLIMITED)
+            }
+            Some((bend, radius)) => {
+                // 2 s / R with 30 fraction bits; a quarter turn is reached at s = 0.785 R
+                if distance >= radius {
+                    return bend;
+                }
+                let cut = 64_u32.wrapping_sub(radius.leading_zeros()).saturating_sub(32);
+                let twice = ((distance >> cut) << 31).checked_div(radius >> cut).unwrap_or(u64::MAX);
+                let angle = i64::try_from(twice).unwrap_or(i64::MAX);
+                if angle >= QUARTER_Q30 {
+                    return bend;
+                }
+                let sine_exit = ratio_q30(exit.min(bend), bend);
+                let (s, c) = (sine(angle), cosine_from_sine(sine(angle)));
+                let cosine_exit = cosine_from_sine(sine_exit);
+                let product = |p: i64, q: i64| p.wrapping_mul(q) >> 30;
+                if product(c, cosine_exit) <= product(s, sine_exit) {
+                    return bend;
+                }
+                let sum = product(s, cosine_exit).wrapping_add(product(c, sine_exit)).clamp(0, RADIAN_Q30);
+                (bend >> 30)
+                    .wrapping_mul(sum.unsigned_abs())
+                    .saturating_add((bend & 0x3FFF_FFFF).wrapping_mul(sum.unsigned_abs()) >> 30)
+            }
+        }
+    }
+
+    /// Acceleration left along the path at a speed.
+    fn along(&self, speed: Speed) -> u32 {
+        match self.full_bend() {
+            None => match self.curve {
+                Curve::Line(..) => self.accel,
+                Curve::Arc(_) => self.accel.wrapping_sub(self.accel >> 12),
+            },
+            Some((bend, _)) => {
+                let taken = ratio_q30(square(speed).min(bend), bend);
+                let left = cosine_from_sine(taken).unsigned_abs();
+                to_u32(u64::from(self.accel).wrapping_mul(left) >> 30).max(self.accel >> 4).max(1)
+            }
+        }
+    }
+
+    /// Advances from `speed` for at most `clocks` (1 to [`TICK_CLOCKS`]), `left` before the end, toward the speed
+    /// `target`, so that the end can be met at the squared speed `exit`.
+    pub fn advance(&self, speed: Speed, left: u64, exit: u64, target: Speed, clocks: u32) -> Advance {
+        let rise = part(self.along(speed), clocks).max(1);
+        let fall = part(self.accel, clocks).max(1);
+        let wish = speed.saturating_add(rise).min(target);
+        let slowest = speed.saturating_sub(fall);
+        let ending = match self.full_bend() {
+            None => self.brake_straight(speed, left, exit, rise),
+            Some(_) => {
+                // the speed allowed depends on how far the stretch leads, which depends on the speed: two rounds
+                let allowed = |end: Speed| {
+                    let covered = covered(speed, end, clocks);
+                    root(self.reachable(left.saturating_sub(covered), exit))
+                };
+                let first = allowed(wish).min(wish);
+                let second = allowed(first).min(wish);
+                first.wrapping_add(second.wrapping_sub(first) / 2)
+            }
+        };
+        let end = wish.min(ending).max(slowest);
+        let length = covered(speed, end, clocks);
+        if length < left {
+            return Advance { length, clocks, speed: end, done: false };
+        }
+        // the end lies inside the stretch
+        let (before, after) = (square(speed), square(end));
+        let reached = if ending < wish && end < speed {
+            // braking for the exit: at full rate, as the stretch's own end would lie beyond
+            let shed = left.saturating_mul(u64::from(self.accel).wrapping_mul(2));
+            before.saturating_sub(shed).max(exit.min(before))
+        } else {
+            // v^2 changes in proportion to the length
+            let share = ratio_q30(left, length.max(1)).unsigned_abs();
+            let change = |all: u64| {
+                let low = (all & 0x3FFF_FFFF).wrapping_mul(share) >> 30;
+                (all >> 30).wrapping_mul(share).wrapping_add(low)
+            };
+            if after >= before {
+                before.saturating_add(change(after.wrapping_sub(before)))
+            } else {
+                before.saturating_sub(change(before.wrapping_sub(after)))
+            }
+        };
+        let at_end = root(reached).max(1);
+        let mean = u64::from(speed).wrapping_add(u64::from(at_end)).max(1);
+        let time = left.saturating_mul(u64::from(TICK_CLOCKS).wrapping_mul(2)) / mean;
+        Advance { length: left, clocks: to_u32(time).min(clocks), speed: at_end, done: true }
+    }
+
+    /// The end speed of a stretch in which the speed changes by at most `rise`, after which constant braking still
+    /// meets the exit: `v1^2 + r v1 <= exit + 2 a s - r v`, from `s - (v + v1) t / 2 >= (v1^2 - exit) / 2 a` with
+    /// `r = a t`. Zero where braking all the way ends inside the stretch.
+    fn brake_straight(&self, speed: Speed, left: u64, exit: u64, rise: u32) -> Speed {
+        let whole = self.reachable(left, exit);
+        let taken = u64::from(rise).wrapping_mul(u64::from(speed));
+        match whole.checked_sub(taken) {
+            Some(bound) => {
+                let half = u64::from(rise >> 1);
+                root(bound.saturating_add(half.wrapping_mul(half))).saturating_sub(rise >> 1)
+            }
+            None => 0,
+        }
+    }
+}
+
+/// Length covered while the speed goes evenly from one value to the other.
+const fn covered(from: Speed, to: Speed, clocks: u32) -> u64 {
+    let twice = (from as u64).wrapping_add(to as u64);
+    if clocks >= TICK_CLOCKS {
+        return twice / 2;
+    }
+    twice.wrapping_mul(clocks as u64) / (TICK_CLOCKS as u64).wrapping_mul(2)
+}
+
+/// `part / whole` with 30 fraction bits, for `part <= whole`.
+const fn ratio_q30(part: u64, whole: u64) -> i64 {
+    let bits = 64_u32.wrapping_sub(whole.leading_zeros());
+    let cut = bits.saturating_sub(32);
+    let (p, w) = (part >> cut, whole >> cut);
+    if w == 0 {
+        return 0;
+    }
+    let ratio = (p << 30) / w;
+    if ratio > RADIAN_Q30.unsigned_abs() { RADIAN_Q30 } else { ratio.cast_signed() }
+}

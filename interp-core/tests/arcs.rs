@@ -1,0 +1,166 @@
+//! Invariants 1 to 3 for arcs: half a pulse from the walked circle, the exact end, the same points back.
+//!
+//! The oracle is the circle itself in `f64`: through both rounded ends, centre moved onto their bisector.
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    clippy::unwrap_used,
+    clippy::panic,
+    missing_docs,
+    reason = "a test whose oracle is in f64"
+)]
+
+use interp_core::curve::Walker;
+use interp_core::curve::prepare_arc::{Metric, Prepared};
+use interp_core::units::{Lattice, PulseSize, Sense};
+use proptest::prelude::*;
+
+struct Case {
+    pulses: (PulseSize, PulseSize),
+    /// X, Z in nm.
+    centre: (i64, i64),
+    radius: f64,
+    /// Radians.
+    from: f64,
+    sweep: f64,
+    sense: Sense,
+}
+
+fn nm(pulse: PulseSize) -> f64 {
+    f64::from(pulse.numerator()) / f64::from(pulse.denominator())
+}
+
+/// What the walk of a case showed; `None` where there is no arc to walk.
+fn walk(case: &Case) -> Option<(f64, u32)> {
+    let (px, pz) = (nm(case.pulses.0), nm(case.pulses.1));
+    let turn = if case.sense == Sense::CounterClockwise { case.sweep } else { -case.sweep };
+    let place = |angle: f64| Lattice {
+        x: ((case.centre.0 as f64 + case.radius * angle.sin()) / px + 0.5).floor() as i32,
+        z: ((case.centre.1 as f64 + case.radius * angle.cos()) / pz + 0.5).floor() as i32,
+    };
+    let (start, end) = (place(case.from), place(case.from + turn));
+    let metric = Metric::new(case.pulses.0, case.pulses.1);
+    let delta = (start.x - end.x).abs().max((start.z - end.z).abs());
+    let arc = match metric.arc(start, end, case.centre, case.sense) {
+        Prepared::Arc(arc, _) => arc,
+        Prepared::Chord if delta > 1 && case.radius > 1.5 * px.max(pz) => panic!("a chord from {start:?} to {end:?}"),
+        Prepared::Chord | Prepared::Nothing => return None,
+    };
+    // the walked circle, relative to the start, nm
+    let (cx, cz) = (case.centre.0 as f64 - f64::from(start.x) * px, case.centre.1 as f64 - f64::from(start.z) * pz);
+    let (ex, ez) = (f64::from(end.x - start.x) * px, f64::from(end.z - start.z) * pz);
+    let shift = 0.5 - (cx * ex + cz * ez) / (ex * ex + ez * ez);
+    let (cx, cz) = (cx + shift * ex, cz + shift * ez);
+    let radius = cx.hypot(cz);
+    let label = format!("{start:?} {end:?} {:?} {:?} R {radius}", case.centre, case.sense);
+    let relative = (arc.radius() as f64 / 4096.0 - radius).abs() / radius;
+    assert!(relative < 1e-6, "{label}: radius {}", arc.radius() as f64 / 4096.0);
+
+    let mut walker = arc.walk();
+    let coarse = px.max(pz);
+    let (mut at, mut visited, mut worst, mut swept) = ((0_i32, 0_i32), vec![(0, 0)], 0.0_f64, 0.0_f64);
+    let angle = |(x, z): (i32, i32)| (f64::from(x) * px - cx).atan2(f64::from(z) * pz - cz);
+    while let Some(step) = walker.next_step() {
+        assert!(step.x != 0 || step.z != 0, "{label}: empty step after {at:?}");
+        let before = angle(at);
+        at = (at.0 + i32::from(step.x), at.1 + i32::from(step.z));
+        let mut gain = angle(at) - before;
+        gain -= (gain / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+        swept += if case.sense == Sense::CounterClockwise { gain } else { -gain };
+        let off = ((f64::from(at.0) * px - cx).hypot(f64::from(at.1) * pz - cz) - radius).abs();
+        worst = worst.max(off / coarse);
+        visited.push(at);
+        assert!(visited.len() < 100_000_000);
+    }
+    assert_eq!(at, (end.x - start.x, end.z - start.z), "{label}: end");
+    let length = arc.length() as f64 / 4096.0;
+    assert!(
+        radius < 2.0 * coarse || swept > -1e-9,
+        "{label}: went backward by {swept}, visited {:?}",
+        &visited[..visited.len().min(12)]
+    );
+    let turned = length / radius;
+    assert!(radius < 2.0 * coarse || (turned - swept).abs() < 1e-6, "{label}: swept {swept}, length says {turned}");
+    let count = visited.len() as u32 - 1;
+    visited.pop();
+    while let Some(step) = walker.previous_step() {
+        at = (at.0 + i32::from(step.x), at.1 + i32::from(step.z));
+        assert_eq!(visited.pop(), Some(at), "{label}: way back");
+    }
+    assert!(visited.is_empty(), "{label}: way back ends early, {} left", visited.len());
+    Some((worst, count))
+}
+
+fn pulse_pairs() -> impl Strategy<Value = (PulseSize, PulseSize)> {
+    prop_oneof![
+        Just((1250, 1, 2500, 1)),
+        Just((1000, 1, 1000, 1)),
+        Just((15875, 8, 2500, 1)),
+        Just((5000, 1, 10000, 1)),
+        Just((10_000, 3, 12_700, 7)),
+        Just((16_777_213, 4093, 16_777_199, 4095)),
+        Just((500, 1, 40_000, 1)),
+    ]
+    .prop_map(|(a, b, c, d)| (PulseSize::new(a, b).unwrap(), PulseSize::new(c, d).unwrap()))
+}
+
+fn sense() -> impl Strategy<Value = Sense> {
+    prop_oneof![Just(Sense::Clockwise), Just(Sense::CounterClockwise)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+    #[test]
+    fn arcs_stay_within_half_a_pulse_and_walk_back(
+        pulses in pulse_pairs(),
+        centre in (-1_000_000_000_i64..1_000_000_000, -1_000_000_000_i64..1_000_000_000),
+        log_radius in 0.5_f64..16.0,
+        from in 0.0..std::f64::consts::TAU,
+        sweep in 0.001..std::f64::consts::PI,
+        sense in sense(),
+    ) {
+        let coarse = nm(pulses.0).max(nm(pulses.1));
+        let radius = coarse * log_radius.exp2();
+        if let Some((worst, _)) = walk(&Case { pulses, centre, radius, from, sweep, sense }) {
+            prop_assert!(worst <= 0.5 + 1e-6, "deviation {worst}");
+        }
+    }
+}
+
+/// Every centre on a fine grid, small radii, every pair of ends on a coarse set of angles.
+#[test]
+fn small_arcs_in_full() {
+    let pulses = (PulseSize::new(1000, 1).unwrap(), PulseSize::new(1000, 1).unwrap());
+    let wide = (PulseSize::new(1000, 1).unwrap(), PulseSize::new(2000, 1).unwrap());
+    let (mut walked, mut worst) = (0_u32, 0.0_f64);
+    for pulses in [pulses, wide] {
+        for radius in (12..=80).map(|k| f64::from(k) * 100.0) {
+            for (cx, cz) in [(0, 0), (500, 0), (0, 500), (500, 500), (250, 130), (790, 410), (999, 1)] {
+                for from in 0..16 {
+                    for sweep in 1..=8 {
+                        for sense in [Sense::Clockwise, Sense::CounterClockwise] {
+                            let case = Case {
+                                pulses,
+                                centre: (cx, cz),
+                                radius,
+                                from: f64::from(from) * std::f64::consts::PI / 8.0,
+                                sweep: f64::from(sweep) * std::f64::consts::PI / 8.0,
+                                sense,
+                            };
+                            if let Some((off, _)) = walk(&case) {
+                                walked += 1;
+                                worst = worst.max(off);
+                                assert!(
+                                    off <= 0.5 + 1e-6,
+                                    "R {radius} about {cx},{cz} from {from} by {sweep} {sense:?}: {off}"
+                                );
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(walked > 100_000, "only {walked} arcs walked");
+}

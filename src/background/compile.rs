@@ -1,0 +1,200 @@
+//! The compile job: lines of program text in, blocks out.
+//!
+//! The interpreter of `feature-editor` makes actions of a line, the block builder of `interp-core` makes blocks of
+//! the actions. Nothing of a refused line becomes a block. A stored program is compiled twice: once to check it
+//! whole, once to run it.
+
+use core::fmt;
+
+use feature_editor::codes::{Action, Diagnostic, Feed, Format, Interpreter, Item, Settings, Severity, SpindleCommand};
+use interp_core::block::{Block, Builder, Limited, Output, Pace, Path, Work};
+use interp_core::config::Machine;
+use interp_core::units::{Axis, Lattice};
+
+/// Something to say about a program.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Finding {
+    /// Of the text itself.
+    Text(Diagnostic),
+    /// A warning: an axis can't reach the programmed feed on this block and holds it back.
+    Limited {
+        /// Line of the program.
+        line: u32,
+        /// What is left.
+        limited: Limited,
+    },
+    /// An error: an arc leaves ±2.1 m between its ends.
+    ArcTooWide {
+        /// Line of the program.
+        line: u32,
+    },
+}
+
+impl Finding {
+    /// Whether the program is refused for it.
+    pub fn is_error(&self) -> bool {
+        match self {
+            Self::Text(diagnostic) => diagnostic.severity() == Severity::Error,
+            Self::Limited { .. } => false,
+            Self::ArcTooWide { .. } => true,
+        }
+    }
+
+    /// Line of the program, from 1.
+    pub const fn line(&self) -> u32 {
+        match self {
+            Self::Text(diagnostic) => diagnostic.line,
+            Self::Limited { line, .. } | Self::ArcTooWide { line } => *line,
+        }
+    }
+
+    /// Column in the line, from 1, and length: characters. The whole line is (1, 0).
+    pub const fn span(&self) -> (u32, u32) {
+        match self {
+            Self::Text(diagnostic) => (diagnostic.column, diagnostic.length),
+            Self::Limited { .. } | Self::ArcTooWide { .. } => (1, 0),
+        }
+    }
+
+    /// Writes what to do about it.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn remedy(&self, f: &mut impl fmt::Write) -> fmt::Result {
+        match self {
+            Self::Text(diagnostic) => write!(f, "{}", diagnostic.remedy()),
+            Self::Limited { limited, .. } => {
+                let axis = limited.axis.letter();
+                write!(f, "program a lower F or raise {axis}.max_feed, if the machine allows it")
+            }
+            Self::ArcTooWide { .. } => f.write_str("split the arc, or move it nearer to the zero point"),
+        }
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Text(diagnostic) => diagnostic.fmt(f),
+            Self::Limited { limited, .. } => {
+                let axis = match limited.axis {
+                    Axis::X => 'X',
+                    Axis::Z => 'Z',
+                };
+                // nm a tick with 12 fraction bits to mm/min: * 60 / 4096 / 1000
+                let um_per_min = u64::from(limited.speed).saturating_mul(60_000) / 4_096;
+                let (whole, part) = (um_per_min / 1_000, um_per_min % 1_000 / 100);
+                write!(f, "F is limited to {whole}.{part} mm/min by the {axis} axis in this direction")
+            }
+            Self::ArcTooWide { .. } => f.write_str("the arc leaves the range of 2.1 m between its ends"),
+        }
+    }
+}
+
+/// Compiles a program line by line.
+#[derive(Clone, Debug)]
+pub struct Compiler {
+    interpreter: Interpreter,
+    builder: Builder,
+    ended: bool,
+}
+
+impl Compiler {
+    /// A compiler at the start of a program.
+    pub fn new(settings: Settings, format: Format, machine: &Machine) -> Self {
+        let builder = Builder::new(machine, settings.start);
+        Self { interpreter: Interpreter::new(settings, format), builder, ended: false }
+    }
+
+    /// The lattice point that everything compiled so far leads to.
+    pub const fn lattice(&self) -> Lattice {
+        self.builder.lattice()
+    }
+
+    /// Whether the program is over.
+    pub const fn is_ended(&self) -> bool {
+        self.ended
+    }
+
+    /// Compiles one line, without its terminator. `emit` gets each action and the blocks that it makes, `report` all
+    /// that there is to say.
+    pub fn line(&mut self, text: &[u8], emit: &mut impl FnMut(&Item, &[Block]), report: &mut impl FnMut(Finding)) {
+        let (builder, ended) = (&mut self.builder, &mut self.ended);
+        let mut late = None;
+        self.interpreter.line(
+            text,
+            &mut |item| {
+                let found = compile(builder, &item, emit);
+                *ended |= matches!(item.action, Action::End);
+                late = late.or(found);
+            },
+            &mut |diagnostic| report(Finding::Text(diagnostic)),
+        );
+        *ended |= self.interpreter.is_ended();
+        if let Some(finding) = late {
+            report(finding);
+        }
+    }
+
+    /// Ends the program: says what only the whole can be blamed for. The caller then adds the end block that
+    /// [`end_block`](Self::end_block) gives, where the program had none.
+    pub fn finish(&mut self, report: &mut impl FnMut(Finding)) {
+        self.interpreter.finish(&mut |diagnostic| report(Finding::Text(diagnostic)));
+    }
+
+    /// The block that ends a program of which it is the last line.
+    pub const fn end_block(line: u32) -> Block {
+        Block { line, work: Work::End }
+    }
+}
+
+/// Makes the blocks of one action.
+fn compile(builder: &mut Builder, item: &Item, emit: &mut impl FnMut(&Item, &[Block])) -> Option<Finding> {
+    let line = item.line;
+    let (path, end, feed) = match item.action {
+        Action::Line { end, feed } => (Path::Line, end, feed),
+        Action::Arc { end, centre, sense, feed } => {
+            (Path::Arc { centre: (centre.x.nm(), centre.z.nm()), sense }, end, feed)
+        }
+        Action::Dwell { ms } => return stand(builder, item, Work::Dwell(ms), emit),
+        Action::Spindle(command) => {
+            let output = match command {
+                SpindleCommand::Forward => Output::SpindleForward,
+                SpindleCommand::Reverse => Output::SpindleReverse,
+                SpindleCommand::Stop => Output::SpindleStop,
+            };
+            return stand(builder, item, Work::Output(output), emit);
+        }
+        Action::SpindleSpeed(speed) => {
+            return stand(builder, item, Work::Output(Output::SpindleSpeed(speed.milli_rpm())), emit);
+        }
+        Action::Tool { number, offset } => {
+            return stand(builder, item, Work::Output(Output::Tool(number, offset)), emit);
+        }
+        Action::Stop => return stand(builder, item, Work::Stop, emit),
+        Action::OptionalStop => return stand(builder, item, Work::OptionalStop, emit),
+        Action::End => return stand(builder, item, Work::End, emit),
+    };
+    let pace = match feed {
+        Feed::Rapid => Pace::Rapid,
+        Feed::PerMinute(feed) => Pace::Feed(feed),
+    };
+    let built = builder.motion(path, end, pace);
+    if built.out_of_range {
+        return Some(Finding::ArcTooWide { line });
+    }
+    let mut blocks = heapless::Vec::<Block, 2>::new();
+    for motion in &built.motions {
+        // at most two motions a curve: the capacity
+        let _ = blocks.push(Block { line, work: Work::Motion(*motion) });
+    }
+    emit(item, &blocks);
+    built.limited.map(|limited| Finding::Limited { line, limited })
+}
+
+/// A block at which the tool stands.
+fn stand(builder: &mut Builder, item: &Item, work: Work, emit: &mut impl FnMut(&Item, &[Block])) -> Option<Finding> {
+    builder.standstill();
+    emit(item, &[Block { line: item.line, work }]);
+    None
+}

@@ -1,0 +1,86 @@
+//! Foreground: executes blocks at hardware priority, one tick at a time.
+//!
+//! It takes commands and blocks out of two single-producer queues and gives a tick of pulse train. It never waits:
+//! what is not there at a tick's start is taken at the next.
+
+use heapless::spsc::Consumer;
+use interp_core::block::Block;
+use interp_core::channel::{Channel, Report, State};
+use interp_core::config::Machine;
+use interp_core::train::Event;
+use interp_core::units::Lattice;
+
+/// Blocks that a lathe looks ahead. The same on every board and on the desktop, since the pulses depend on it.
+pub const LOOKAHEAD: usize = 64;
+
+/// Capacity of the queue of blocks, one less than its length: what the background may be ahead of the look-ahead.
+pub const BLOCK_QUEUE: usize = 17;
+
+/// Capacity of the queue of commands, one less than its length.
+pub const COMMAND_QUEUE: usize = 9;
+
+/// What the background, a key or the link asks of the foreground.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// Cycle start; goes on after a hold or a programmed stop.
+    Start,
+    /// Feed hold.
+    Hold,
+    /// Feed override, percent, 0 to 200.
+    FeedOverride(u16),
+    /// Optional stops stop.
+    OptionalStop(bool),
+}
+
+/// The foreground of one lathe.
+pub struct Foreground<'q> {
+    channel: Channel<LOOKAHEAD>,
+    blocks: Consumer<'q, Block>,
+    commands: Consumer<'q, Command>,
+}
+
+impl<'q> Foreground<'q> {
+    /// A lathe that stands at `position` and takes from these queues.
+    pub fn new(
+        machine: &Machine,
+        position: Lattice,
+        blocks: Consumer<'q, Block>,
+        commands: Consumer<'q, Command>,
+    ) -> Self {
+        Self { channel: Channel::new(machine, position), blocks, commands }
+    }
+
+    /// Makes one tick of train.
+    pub fn tick(&mut self, out: &mut impl FnMut(Event)) -> Report {
+        while let Some(command) = self.commands.dequeue() {
+            self.obey(command);
+        }
+        let blocks = &mut self.blocks;
+        self.channel.tick(&mut || blocks.dequeue(), out)
+    }
+
+    fn obey(&mut self, command: Command) {
+        match command {
+            // a start with nothing to start and a hold of nothing are requests without effect, and harmless
+            Command::Start => drop(self.channel.start()),
+            Command::Hold => drop(self.channel.hold()),
+            Command::FeedOverride(percent) => self.channel.set_feed_override(percent),
+            Command::OptionalStop(on) => self.channel.set_optional_stop(on),
+        }
+    }
+
+    /// What the lathe is doing.
+    pub const fn state(&self) -> State {
+        self.channel.state()
+    }
+
+    /// Where the last pulse planned leads.
+    pub const fn position(&self) -> Lattice {
+        self.channel.position()
+    }
+
+    /// How often the look-ahead wanted a block and the queue was empty.
+    pub const fn starved(&self) -> u32 {
+        self.channel.starved()
+    }
+}

@@ -1,0 +1,1 @@
+//! Whole cycles on the desktop.

@@ -1,0 +1,2 @@
+//! virtual-lathe
+fn main() {}
