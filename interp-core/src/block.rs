@@ -159,9 +159,9 @@ pub struct Builder {
     heading: Option<Direction>,
 }
 
-/// The part of its acceleration that an arc's curvature may take: at most sqrt(0.98 a R), so that a fifth of the
+/// The part of its acceleration that an arc's curvature may take: at most sqrt(0.998 a R), so that a sixteenth of the
 /// acceleration is always left to brake with.
-const CURVATURE_SHARE: (u128, u128) = (98, 100);
+const CURVATURE_SHARE: (u128, u128) = (998, 1000);
 
 impl Builder {
     /// A builder that stands at `at`.
@@ -241,7 +241,7 @@ impl Builder {
                 let (entry, exit, extent) = (turn.heading(0), turn.heading(turn.sweep), turn.extent());
                 let by_axis = self.speed_limit(extent);
                 let accel = self.machine.x.accel.min(self.machine.z.accel);
-                // v^2 = 0.98 a R; both sides with 24 fraction bits
+                // v^2 = 0.998 a R; both sides with 24 fraction bits
                 let square = u128::from(accel).wrapping_mul(u128::from(arc.radius()));
                 let (share, of) = CURVATURE_SHARE;
                 let by_bend = to_u32(root_wide(square.wrapping_mul(share) / of));

@@ -246,9 +246,12 @@ impl Parameters {
     /// # Errors
     /// [`ConfigError`] where they contradict each other.
     pub fn machine(&self) -> Result<Machine, ConfigError> {
-        let config =
-            Config { x: self.axis(Axis::X), z: self.axis(Axis::Z), event_min_ns: self.small(index::EVENT_MIN) };
-        config.check()
+        self.config().check()
+    }
+
+    /// The machine as typed, unchecked.
+    pub fn config(&self) -> Config {
+        Config { x: self.axis(Axis::X), z: self.axis(Axis::Z), event_min_ns: self.small(index::EVENT_MIN) }
     }
 
     /// How program text is read.

@@ -1,2 +1,98 @@
-//! virtual-lathe
-fn main() {}
+//! The command line of the virtual lathe.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use feature_editor::codes::Format;
+use virtual_lathe::turn::{self, Job};
+
+/// HandCNC's virtual lathe: runs programs through the firmware's own code, measures and draws the pulses.
+#[derive(Parser)]
+#[command(name = "virtual-lathe", version, args_conflicts_with_subcommands = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a program (the embedded demo without FILE) and report on its pulse train.
+    Turn(Turn),
+    /// List all parameters with units, ranges and defaults.
+    Parameters,
+}
+
+#[derive(Args, Default)]
+struct Turn {
+    /// Program text; `-` is standard input.
+    file: Option<PathBuf>,
+    /// How the program is written.
+    #[arg(long, value_enum, default_value_t = FormatName::Auto)]
+    format: FormatName,
+    /// Machine parameters, in TOML.
+    #[arg(long, value_name = "FILE.toml")]
+    machine: Option<PathBuf>,
+    /// One parameter; beats the machine file. `parameters` lists them.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = name_and_value)]
+    set: Vec<(String, String)>,
+    /// Write every step: time in ns, position in pulses.
+    #[arg(long, value_name = "FILE.csv")]
+    trace: Option<PathBuf>,
+    /// Write the figures.
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+    /// Draw the path (SVG or PNG by the name's ending). Without any output option out/NAME.svg and .png are drawn.
+    #[arg(long, value_name = "FILE.svg|png", value_parser = picture_file)]
+    picture: Option<PathBuf>,
+}
+
+#[derive(Copy, Clone, Default, ValueEnum)]
+enum FormatName {
+    /// Told from the text.
+    #[default]
+    Auto,
+    /// Word address (ISO 6983).
+    Gcode,
+    /// The sample of 1973: pulses of 0.01 mm, arcs by quadrants.
+    Nc1973,
+}
+
+fn name_and_value(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().into(), value.trim().into())),
+        _ => Err("write it as NAME=VALUE".into()),
+    }
+}
+
+fn picture_file(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+    match ending.as_deref().and_then(|ending| ending.to_str()) {
+        Some("svg" | "png") => Ok(path),
+        _ => Err("the name must end in .svg or .png".into()),
+    }
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    match cli.command.unwrap_or_else(|| Command::Turn(Turn::default())) {
+        Command::Turn(options) => ExitCode::from(turn::turn(&Job {
+            file: options.file,
+            format: match options.format {
+                FormatName::Auto => None,
+                FormatName::Gcode => Some(Format::Gcode),
+                FormatName::Nc1973 => Some(Format::Nc1973),
+            },
+            machine: options.machine,
+            set: options.set,
+            trace: options.trace,
+            report: options.report,
+            picture: options.picture,
+        })),
+        Command::Parameters => {
+            print!("{}", virtual_lathe::report::parameters());
+            ExitCode::SUCCESS
+        }
+    }
+}

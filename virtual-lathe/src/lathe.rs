@@ -1,0 +1,199 @@
+//! The lathe on the desk: runs a program through the firmware's own background and foreground.
+//!
+//! The two sides take turns in one thread: before each tick the background compiles until the queue of blocks is
+//! full, so the look-ahead never lacks a block that the program has.
+
+use std::collections::VecDeque;
+use std::io;
+
+use feature_editor::codes::{Format, Item};
+use handcnc::background::compile::{Compiler, Finding};
+use handcnc::background::parameters::Parameters;
+use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
+use heapless::spsc::Queue;
+use interp_core::block::Block;
+use interp_core::channel::{Report, State};
+use interp_core::config::Machine;
+
+use crate::program::{Lines, Program};
+
+/// What watches a run.
+pub trait Observer {
+    /// The background compiled an action, ahead of its execution; `blocks` is how many blocks it made.
+    fn compiled(&mut self, item: &Item, blocks: usize);
+
+    /// The foreground made a tick that belongs to a cycle.
+    ///
+    /// # Errors
+    /// What the observer writes to.
+    fn tick(&mut self, events: &[u32], report: &Report) -> io::Result<()>;
+
+    /// A programmed stop was passed by.
+    fn stopped(&mut self, line: u32);
+
+    /// Bytes of the program read so far.
+    fn progress(&mut self, bytes: u64);
+}
+
+/// What checking a program found.
+#[derive(Debug, Default)]
+pub struct Checked {
+    /// Findings in the order of the program, with their lines; at most [`FINDINGS_KEPT`] errors and as many warnings.
+    pub findings: Vec<(Finding, Vec<u8>)>,
+    /// All errors.
+    pub errors: usize,
+    /// All warnings.
+    pub warnings: usize,
+    /// Lines of the program.
+    pub lines: u64,
+}
+
+/// Errors, and warnings, of a program that are kept.
+pub const FINDINGS_KEPT: usize = 100;
+
+/// Checks a whole program; moves nothing. `action` gets every action of a good line.
+///
+/// # Errors
+/// Those of reading it.
+pub fn check(
+    program: &Program,
+    format: Format,
+    parameters: &Parameters,
+    machine: &Machine,
+    action: &mut impl FnMut(&Item),
+    progress: &mut impl FnMut(u64),
+) -> io::Result<Checked> {
+    let mut checked = Checked::default();
+    let mut compiler = Compiler::new(parameters.settings(), format, machine);
+    let mut lines = program.lines()?;
+    let mut last = Vec::new();
+    loop {
+        let read = lines.bytes();
+        let Some(line) = lines.next_line()? else { break };
+        checked.lines += 1;
+        if checked.lines % 1024 == 0 {
+            progress(read);
+        }
+        let mut found = Vec::new();
+        compiler.line(line, &mut |item, _| action(item), &mut |finding| found.push(finding));
+        found.sort_by_key(Finding::span);
+        for finding in found {
+            checked.keep(finding, line);
+        }
+        last.clear();
+        last.extend_from_slice(line.get(..line.len().min(256)).unwrap_or_default());
+    }
+    let mut found = Vec::new();
+    compiler.finish(&mut |finding| found.push(finding));
+    for finding in found {
+        checked.keep(finding, &last);
+    }
+    Ok(checked)
+}
+
+impl Checked {
+    fn keep(&mut self, finding: Finding, line: &[u8]) {
+        let count = if finding.is_error() { &mut self.errors } else { &mut self.warnings };
+        *count += 1;
+        if *count <= FINDINGS_KEPT {
+            self.findings.push((finding, line.to_vec()));
+        }
+    }
+}
+
+/// The background's side of a run: a program on its way into the queue.
+struct Source {
+    lines: Lines,
+    compiler: Compiler,
+    ready: VecDeque<Block>,
+    line: u32,
+    ended: bool,
+}
+
+impl Source {
+    /// The next block, compiled when none is ready.
+    fn next(&mut self, observer: &mut impl Observer) -> io::Result<Option<Block>> {
+        while self.ready.is_empty() && !self.ended {
+            self.line = self.line.saturating_add(1);
+            let text = match self.lines.next_line()? {
+                Some(text) if !self.compiler.is_ended() => text,
+                _ => {
+                    self.ended = true;
+                    self.ready.push_back(Compiler::end_block(self.line));
+                    break;
+                }
+            };
+            let ready = &mut self.ready;
+            let mut emit = |item: &Item, blocks: &[Block]| {
+                observer.compiled(item, blocks.len());
+                ready.extend(blocks);
+            };
+            // the program was checked before: what there is to say has been said
+            self.compiler.line(text, &mut emit, &mut |_| {});
+            self.ended = self.ready.back().is_some_and(|block| matches!(block.work, interp_core::block::Work::End));
+        }
+        Ok(self.ready.pop_front())
+    }
+}
+
+/// Runs a program that [`check`] found good, from cycle start to its end. Programmed stops are passed by.
+///
+/// # Errors
+/// Those of reading the program, and the observer's.
+pub fn run(
+    program: &Program,
+    format: Format,
+    parameters: &Parameters,
+    machine: &Machine,
+    observer: &mut impl Observer,
+) -> io::Result<()> {
+    let compiler = Compiler::new(parameters.settings(), format, machine);
+    let position = compiler.lattice();
+    let mut source = Source { lines: program.lines()?, compiler, ready: VecDeque::new(), line: 0, ended: false };
+    let mut blocks = Queue::<Block, BLOCK_QUEUE>::new();
+    let mut commands = Queue::<Command, COMMAND_QUEUE>::new();
+    let (mut block_in, block_out) = blocks.split();
+    let (mut command_in, command_out) = commands.split();
+    let mut foreground = Foreground::new(machine, position, block_out, command_out);
+    let full = || io::Error::other("the queue of commands is full");
+    command_in.enqueue(Command::FeedOverride(parameters.feed_override())).map_err(|_| full())?;
+    command_in.enqueue(Command::Start).map_err(|_| full())?;
+    let mut events = Vec::with_capacity(1024);
+    let mut ticks = 0_u64;
+    loop {
+        while block_in.ready() {
+            let Some(block) = source.next(observer)? else { break };
+            block_in.enqueue(block).map_err(|_| io::Error::other("the queue of blocks is full"))?;
+        }
+        events.clear();
+        let report = foreground.tick(&mut |event| events.push(event.word()));
+        if report.in_cycle {
+            observer.tick(&events, &report)?;
+        }
+        ticks += 1;
+        if ticks % 256 == 0 {
+            observer.progress(source.lines.bytes());
+        }
+        match report.state {
+            State::Ended => return finish(&mut foreground, observer, &mut events),
+            State::Stopped => {
+                observer.stopped(report.line);
+                command_in.enqueue(Command::Start).map_err(|_| full())?;
+            }
+            State::Idle | State::Filling | State::Running | State::Holding => {}
+        }
+    }
+}
+
+/// Two ticks more, so that the last pulse's falling edge is played, too.
+fn finish(foreground: &mut Foreground<'_>, observer: &mut impl Observer, events: &mut Vec<u32>) -> io::Result<()> {
+    for _ in 0..2 {
+        events.clear();
+        let report = foreground.tick(&mut |event| events.push(event.word()));
+        observer.tick(events, &report)?;
+    }
+    if foreground.starved() > 0 {
+        return Err(io::Error::other(format!("the look-ahead lacked a block {} times", foreground.starved())));
+    }
+    Ok(())
+}

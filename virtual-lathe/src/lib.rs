@@ -1,0 +1,19 @@
+#![forbid(unsafe_code)]
+//! The lathe on the desk.
+//!
+//! It runs programs through the firmware's own background and foreground ([`lathe`]), measures the pulse train with
+//! an independent checker (the crate `measure`) and draws what the pulses did ([`picture`]). [`turn`] puts that
+//! together as the command `turn`.
+
+pub mod insets;
+pub mod lathe;
+pub mod machine_file;
+pub mod messages;
+pub mod output;
+pub mod picture;
+pub mod program;
+pub mod report;
+pub mod turn;
+
+/// The embedded demo program: a handle.
+pub const DEMO: &[u8] = include_bytes!("demo/handle.nc");

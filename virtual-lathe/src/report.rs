@@ -1,0 +1,135 @@
+//! What is said about a run: JSON for scripts, a few lines for people, and the list of parameters.
+
+use std::fmt::Write;
+use std::time::Duration;
+
+use handcnc::background::parameters::{DEFINITIONS, Kind};
+use measure::{PerAxis, Report};
+use serde_json::{Map, Value, json};
+
+/// Figures that the checker does not have.
+#[derive(Clone, Debug, Default)]
+pub struct Run {
+    /// Program blocks that move.
+    pub blocks: u64,
+    /// Time that the computer took.
+    pub wall: Duration,
+    /// Warnings, as text.
+    pub warnings: Vec<String>,
+}
+
+fn axes(values: PerAxis<f64>) -> Value {
+    json!({ "x": rounded(values.x, 3), "z": rounded(values.z, 3) })
+}
+
+/// A number with so many decimals.
+fn rounded(value: f64, decimals: i32) -> f64 {
+    let scale = 10_f64.powi(decimals);
+    (value * scale).round() / scale
+}
+
+/// The report as JSON, keys in a fixed order.
+pub fn json(report: &Report, run: &Run) -> String {
+    let feed = match &report.feed_error_percent {
+        Some(error) => json!({ "mean": rounded(error.mean, 6), "max": rounded(error.max, 6) }),
+        None => json!({ "mean": 0.0, "max": 0.0 }),
+    };
+    let mut map = Map::new();
+    map.insert("blocks".into(), run.blocks.into());
+    map.insert("events".into(), report.events.into());
+    map.insert("pulses".into(), json!({ "x": report.pulses.x, "z": report.pulses.z }));
+    map.insert("time_s".into(), rounded(report.time_s, 6).into());
+    map.insert("train_hash".into(), format!("{:016x}", report.train_hash).into());
+    map.insert(
+        "deviation_pulses".into(),
+        json!({ "walked": rounded(report.walked.pulses, 6), "programmed": rounded(report.programmed.pulses, 6) }),
+    );
+    map.insert("max_rate_hz".into(), axes(report.max_rate_hz));
+    map.insert("max_accel".into(), axes(report.max_accel));
+    map.insert("feed_error_percent".into(), feed);
+    map.insert("warnings".into(), run.warnings.clone().into());
+    let mut text = serde_json::to_string_pretty(&Value::Object(map)).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+/// The report for a person.
+pub fn summary(name: &str, report: &Report, run: &Run) -> String {
+    let mut text = String::new();
+    let wall = run.wall.as_secs_f64().max(1e-9);
+    // writing to a string cannot fail
+    let _ = writeln!(
+        text,
+        "{name}: {} blocks, {} machine time, run in {:.2} s ({:.0} times as fast)",
+        run.blocks,
+        clock(report.time_s),
+        wall,
+        report.time_s / wall
+    );
+    let _ = writeln!(
+        text,
+        "  pulses      X {}, Z {}; {} events, train {:016x}",
+        report.pulses.x, report.pulses.z, report.events, report.train_hash
+    );
+    let _ = writeln!(
+        text,
+        "  deviation   {:.3} pulses from the walked curve, {:.3} from the programmed one",
+        report.walked.pulses, report.programmed.pulses
+    );
+    let _ = writeln!(
+        text,
+        "  peaks       X {:.1} kHz and {:.0} mm/s2, Z {:.1} kHz and {:.0} mm/s2",
+        report.max_rate_hz.x / 1e3,
+        report.max_accel.x,
+        report.max_rate_hz.z / 1e3,
+        report.max_accel.z
+    );
+    match &report.feed_error_percent {
+        Some(error) => {
+            let _ = writeln!(
+                text,
+                "  feed error  {:.4} % mean, {:.4} % at most, over {} windows of 50 ms",
+                error.mean, error.max, error.windows
+            );
+        }
+        None => text.push_str("  feed error  no motion is long enough to tell\n"),
+    }
+    text
+}
+
+/// Seconds as a person reads them.
+pub fn clock(seconds: f64) -> String {
+    if seconds < 60.0 {
+        format!("{seconds:.3} s")
+    } else if seconds < 3600.0 {
+        let minutes = (seconds / 60.0).floor();
+        format!("{minutes:.0} min {:.1} s", seconds - minutes * 60.0)
+    } else {
+        let hours = (seconds / 3600.0).floor();
+        format!("{hours:.0} h {:.1} min", (seconds - hours * 3600.0) / 60.0)
+    }
+}
+
+/// All parameters as a table.
+pub fn parameters() -> String {
+    let mut text = String::new();
+    for definition in &DEFINITIONS {
+        let range = match definition.kind {
+            Kind::Number { scale, least, most } => {
+                #[expect(clippy::cast_precision_loss, reason = "bounds of at most eleven digits")]
+                let shown = |held: i64| held as f64 / f64::from(scale);
+                format!("{} to {}", shown(least), shown(most))
+            }
+            Kind::Pulse => "10 to 1000000, ratio or decimal".into(),
+            Kind::Switch => "true, false".into(),
+            Kind::Choice(words) => words.join(", "),
+            Kind::Place => "X,Z, each -2100 to 2100".into(),
+        };
+        let _ = writeln!(
+            text,
+            "{:<18} {:<20} {:<7} {:<32} {}",
+            definition.name, definition.default, definition.unit, range, definition.help
+        );
+    }
+    text
+}

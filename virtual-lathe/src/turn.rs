@@ -1,0 +1,437 @@
+//! The command `turn`: checks a program, runs it, measures its train, writes trace, report and pictures.
+
+use std::collections::VecDeque;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use feature_editor::codes::{Action, Feed, Format, Item};
+use handcnc::background::parameters::Parameters;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use interp_core::channel;
+use interp_core::config::{Config, Machine};
+use interp_core::units::{Axis, Point, Sense};
+use measure::{Checker, Limits, Motion, PerAxis, PulseEquivalent, Report, Setup, Shape};
+
+use crate::insets::{self, Chooser};
+use crate::lathe::{self, Observer};
+use crate::output::Pending;
+use crate::picture::{self, Drawing, Inset, Kind, Thinner};
+use crate::program::Program;
+use crate::report::{self, Run};
+use crate::{DEMO, machine_file, messages};
+
+/// Exit code: done.
+pub const DONE: u8 = 0;
+/// Exit code: the program or the parameters were refused.
+pub const REFUSED: u8 = 1;
+/// Exit code: a file can't be read or written.
+pub const UNUSABLE: u8 = 2;
+
+/// Width of pictures, pixels.
+const WIDTH: u32 = 1600;
+/// Points of the path that a picture keeps.
+const PATH_POINTS: usize = 20_000;
+/// Warnings of one kind that a report lists.
+const WARNINGS_LISTED: usize = 100;
+
+/// What `turn` is asked to do.
+#[derive(Clone, Debug, Default)]
+pub struct Job {
+    /// The program; the demo without one.
+    pub file: Option<PathBuf>,
+    /// Its format; told from the text without one.
+    pub format: Option<Format>,
+    /// Machine file.
+    pub machine: Option<PathBuf>,
+    /// Parameters by name.
+    pub set: Vec<(String, String)>,
+    /// Where the trace goes.
+    pub trace: Option<PathBuf>,
+    /// Where the report goes.
+    pub report: Option<PathBuf>,
+    /// Where the picture goes.
+    pub picture: Option<PathBuf>,
+}
+
+/// Why a job ended early.
+enum Failure {
+    /// Said already.
+    Refused,
+    /// A file can't be read or written.
+    Unusable(String),
+    /// The machine's own check failed: a bug, worth a report.
+    Fault(String),
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Self::Unusable(error.to_string())
+    }
+}
+
+/// Runs a job; the exit code.
+pub fn turn(job: &Job) -> u8 {
+    match run(job) {
+        Ok(()) => DONE,
+        Err(Failure::Refused) => REFUSED,
+        Err(Failure::Unusable(message)) => {
+            eprintln!("error: {message}");
+            UNUSABLE
+        }
+        Err(Failure::Fault(message)) => {
+            eprintln!(
+                "fault: {message}\n   = the pulses were found wrong; nothing was written. This is a bug: please report the program"
+            );
+            REFUSED
+        }
+    }
+}
+
+fn run(job: &Job) -> Result<(), Failure> {
+    let (parameters, machine) = parameters(job)?;
+    let program = match &job.file {
+        None => Program::Text { name: "handle.nc".into(), text: DEMO.to_vec() },
+        Some(path) => Program::open(path).map_err(|error| Failure::Unusable(format!("{}: {error}", path.display())))?,
+    };
+    let name = program.name();
+    let format = match job.format {
+        Some(format) => format,
+        None => program.detect()?,
+    };
+    let bar = progress(program.size());
+    let (warnings, chooser) = check(&program, format, &parameters, &machine, &bar)?;
+    let pulse = [pulse_mm(&machine, Axis::Z), pulse_mm(&machine, Axis::X)];
+    let trace = match &job.trace {
+        Some(path) => Some(Pending::create(path)?),
+        None => None,
+    };
+    let mut watch = Watch {
+        checker: Checker::new(setup(&parameters, &machine)?).map_err(|error| Failure::Fault(error.to_string()))?,
+        at: parameters.start(),
+        kinds: VecDeque::new(),
+        kind: Kind::Rapid,
+        thinner: Thinner::new(pulse[0].max(pulse[1]) * 0.5, PATH_POINTS),
+        pulse,
+        insets: chooser.insets(pulse),
+        trace,
+        blocks: 0,
+        stops: 0,
+        last_stop: 0,
+        bar,
+    };
+    watch.begin(&machine, parameters.start())?;
+    let began = Instant::now();
+    lathe::run(&program, format, &parameters, &machine, &mut watch)?;
+    let wall = began.elapsed();
+    watch.bar.finish_and_clear();
+    conclude(job, &program, &name, watch, warnings, wall)
+}
+
+/// Reads machine file and settings; all errors are told.
+fn parameters(job: &Job) -> Result<(Parameters, Machine), Failure> {
+    let mut parameters = Parameters::new();
+    let mut errors = Vec::new();
+    if let Some(path) = &job.machine {
+        let unreadable = |error: &dyn std::fmt::Display| Failure::Unusable(format!("{}: {error}", path.display()));
+        let bytes = std::fs::read(path).map_err(|error| unreadable(&error))?;
+        let text = String::from_utf8(bytes).map_err(|error| unreadable(&error))?;
+        errors = machine_file::read(&path.display().to_string(), &text, &mut parameters);
+    }
+    for (name, value) in &job.set {
+        if let Err(error) = parameters.set(name, value) {
+            errors.push(format!("error: --set {name}={value}: {error}"));
+        }
+    }
+    if errors.is_empty() && parameters.feed_override() == 0 {
+        errors.push("error: feed_override = 0: the program would never end".into());
+    }
+    match parameters.machine() {
+        Ok(machine) if errors.is_empty() => return Ok((parameters, machine)),
+        Ok(_) => {}
+        Err(error) => errors.push(format!("error: {error}")),
+    }
+    for error in &errors {
+        eprintln!("{error}");
+    }
+    eprintln!("   = `parameters` lists all names, units and ranges; nothing was run");
+    Err(Failure::Refused)
+}
+
+/// Checks the program whole; its warnings, and what of it is worth magnifying.
+fn check(
+    program: &Program,
+    format: Format,
+    parameters: &Parameters,
+    machine: &Machine,
+    bar: &ProgressBar,
+) -> Result<(Vec<String>, Chooser), Failure> {
+    bar.set_message("checking");
+    let mut chooser = Chooser::new(parameters.start());
+    let checked = lathe::check(program, format, parameters, machine, &mut |item| chooser.action(item), &mut |bytes| {
+        bar.set_position(bytes);
+    })?;
+    let name = program.name();
+    bar.suspend(|| {
+        for (finding, line) in &checked.findings {
+            eprint!("{}", messages::finding(&name, finding, line));
+        }
+    });
+    if checked.errors > 0 {
+        bar.finish_and_clear();
+        let more = checked.errors.saturating_sub(lathe::FINDINGS_KEPT);
+        let rest = if more > 0 { format!(" ({more} of them not shown)") } else { String::new() };
+        eprintln!("{name}: refused, {} error(s) in {} line(s){rest}; nothing was run", checked.errors, checked.lines);
+        return Err(Failure::Refused);
+    }
+    let mut warnings: Vec<String> = checked
+        .findings
+        .iter()
+        .map(|(finding, _)| format!("line {}: {finding}", finding.line()))
+        .take(WARNINGS_LISTED)
+        .collect();
+    if checked.warnings > warnings.len() {
+        warnings.push(format!("{} more warnings", checked.warnings - warnings.len()));
+    }
+    if parameters.corner_nm() > 0 {
+        warnings.push("corner_um: corners are not blended; the path stays exact".into());
+    }
+    Ok((warnings, chooser))
+}
+
+/// Writes what was asked for, once the figures are in.
+fn conclude(
+    job: &Job,
+    program: &Program,
+    name: &str,
+    watch: Watch,
+    mut warnings: Vec<String>,
+    wall: Duration,
+) -> Result<(), Failure> {
+    if watch.stops > 0 {
+        warnings.push(format!(
+            "line {}: programmed stop passed by, as there is no operator ({} in all)",
+            watch.last_stop, watch.stops
+        ));
+    }
+    let Watch { checker, thinner, insets, trace, blocks, .. } = watch;
+    let report = checker.finish();
+    if report.faults.total() > 0 {
+        let list: Vec<String> = report.faults.first().iter().map(ToString::to_string).collect();
+        return Err(Failure::Fault(format!(
+            "{name}: {} broken rules\n   {}",
+            report.faults.total(),
+            list.join("\n   ")
+        )));
+    }
+    let run = Run { blocks, wall, warnings };
+    let mut files = Vec::new();
+    files.extend(trace);
+    if let Some(path) = &job.report {
+        let mut file = Pending::create(path)?;
+        file.writer().write_all(report::json(&report, &run).as_bytes())?;
+        files.push(file);
+    }
+    let pictures = pictures(job, program);
+    if !pictures.is_empty() {
+        files.extend(draw(&pictures, name, &report, &thinner, insets)?);
+    }
+    print!("{}", report::summary(name, &report, &run));
+    for warning in &run.warnings {
+        println!("  warning     {warning}");
+    }
+    for file in files {
+        println!("  wrote       {}", file.keep()?.display());
+    }
+    Ok(())
+}
+
+/// The pictures to draw: the one asked for, or both kinds where no output was asked for.
+fn pictures(job: &Job, program: &Program) -> Vec<PathBuf> {
+    match (&job.picture, &job.trace, &job.report) {
+        (Some(path), _, _) => vec![path.clone()],
+        (None, None, None) => {
+            let stem = program.stem();
+            vec![Path::new("out").join(format!("{stem}.svg")), Path::new("out").join(format!("{stem}.png"))]
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn draw(
+    paths: &[PathBuf],
+    name: &str,
+    report: &Report,
+    thinner: &Thinner,
+    insets: Vec<Inset>,
+) -> Result<Vec<Pending>, Failure> {
+    let tracks = thinner.tracks();
+    let start = tracks.first().and_then(|track| track.points.first()).copied().unwrap_or_default();
+    let end = tracks.last().and_then(|track| track.points.last()).copied().unwrap_or(start);
+    let drawing = Drawing {
+        title: name.to_owned(),
+        subtitle: format!(
+            "{}, {} pulses of X, {} of Z; at most {:.3} pulses off the curve; train {:016x}",
+            report::clock(report.time_s),
+            report.pulses.x,
+            report.pulses.z,
+            report.walked.pulses,
+            report.train_hash
+        ),
+        tracks,
+        start,
+        end,
+        insets,
+    };
+    let svg = drawing.svg(WIDTH);
+    let mut files = Vec::new();
+    for path in paths {
+        let mut file = Pending::create(path)?;
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+            let image = picture::png(&svg, WIDTH).map_err(|error| Failure::Unusable(error.to_string()))?;
+            file.writer().write_all(&image)?;
+        } else {
+            file.writer().write_all(svg.as_bytes())?;
+        }
+        files.push(file);
+    }
+    Ok(files)
+}
+
+/// A bar that shows from the first second on, on terminals.
+fn progress(size: u64) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(size), ProgressDrawTarget::stderr_with_hz(10));
+    let style = ProgressStyle::with_template("{msg:>9} {bar:30} {percent:>3} %  {elapsed} of {duration}");
+    if let Ok(style) = style {
+        bar.set_style(style);
+    }
+    bar
+}
+
+fn pulse_mm(machine: &Machine, axis: Axis) -> f64 {
+    let pulse = match axis {
+        Axis::X => machine.x.pulse,
+        Axis::Z => machine.z.pulse,
+    };
+    f64::from(pulse.numerator()) / f64::from(pulse.denominator()) * 1e-6
+}
+
+/// The checker's set-up: the parameters as they were typed, not as the interpolator holds them.
+fn setup(parameters: &Parameters, machine: &Machine) -> Result<Setup, Failure> {
+    let Config { x, z, event_min_ns } = parameters.config();
+    #[expect(clippy::cast_precision_loss, reason = "feeds of at most eleven digits")]
+    let limits = |axis: &interp_core::config::AxisConfig| Limits {
+        max_accel: f64::from(axis.max_accel) / 1e3,
+        max_feed: axis.max_feed.nm_per_min() as f64 / 1e6,
+        max_jump: f64::from(axis.max_jump) / 1e3,
+        pulse_width_ns: axis.pulse_width_ns,
+        dir_setup_ns: axis.dir_setup_ns,
+        dir_hold_ns: axis.dir_hold_ns,
+        min_space_ns: axis.min_space_ns,
+    };
+    let pulse = |axis: &interp_core::config::AxisConfig| PulseEquivalent {
+        num: axis.pulse.numerator(),
+        den: axis.pulse.denominator(),
+    };
+    let start = parameters.start();
+    Ok(Setup {
+        pulse_nm: PerAxis { x: pulse(&x), z: pulse(&z) },
+        start: PerAxis { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) },
+        start_nm: nm(start),
+        limits: PerAxis { x: limits(&x), z: limits(&z) },
+        event_min_ns,
+    })
+}
+
+fn nm(point: Point) -> PerAxis<i64> {
+    PerAxis { x: i64::from(point.x.nm()), z: i64::from(point.z.nm()) }
+}
+
+/// Watches a run: measures, traces, collects what is drawn.
+struct Watch {
+    checker: Checker,
+    /// Programmed position of the action compiled last.
+    at: Point,
+    /// Lines compiled ahead, with the kind of their motion.
+    kinds: VecDeque<(u32, Kind)>,
+    kind: Kind,
+    thinner: Thinner,
+    /// Z and X, mm.
+    pulse: [f64; 2],
+    insets: Vec<Inset>,
+    trace: Option<Pending>,
+    blocks: u64,
+    stops: u64,
+    last_stop: u32,
+    bar: ProgressBar,
+}
+
+impl Watch {
+    /// Notes the start.
+    fn begin(&mut self, machine: &Machine, start: Point) -> io::Result<()> {
+        let (x, z) = (machine.x.pulse.nearest(start.x), machine.z.pulse.nearest(start.z));
+        self.thinner.push(Kind::Rapid, [f64::from(z) * self.pulse[0], f64::from(x) * self.pulse[1]]);
+        insets::visit(&mut self.insets, z, x);
+        if let Some(trace) = &mut self.trace {
+            writeln!(trace.writer(), "time_ns,x,z\n0,{x},{z}")?;
+        }
+        self.bar.set_message("turning");
+        self.bar.set_position(0);
+        Ok(())
+    }
+}
+
+impl Observer for Watch {
+    fn compiled(&mut self, item: &Item, blocks: usize) {
+        let (shape, end, feed) = match item.action {
+            Action::Line { end, feed } => (Shape::Line, end, feed),
+            Action::Arc { end, centre, sense, feed } => {
+                let centre_nm = PerAxis { x: centre.x.nm(), z: centre.z.nm() };
+                (Shape::Arc { centre_nm, clockwise: sense == Sense::Clockwise }, end, feed)
+            }
+            _ => return self.checker.pause(),
+        };
+        #[expect(clippy::cast_precision_loss, reason = "feeds of at most eleven digits")]
+        let feed_mm_min = match feed {
+            Feed::Rapid => None,
+            Feed::PerMinute(feed) => Some(feed.nm_per_min() as f64 / 1e6),
+        };
+        self.checker.motion(Motion { line: item.line, shape, end_nm: nm(end), feed_mm_min });
+        let kind = match (shape, feed) {
+            (_, Feed::Rapid) => Kind::Rapid,
+            (Shape::Line, Feed::PerMinute(_)) => Kind::Feed,
+            (Shape::Arc { .. }, Feed::PerMinute(_)) => Kind::Arc,
+        };
+        self.blocks += u64::from(blocks > 0);
+        self.kinds.push_back((item.line, kind));
+        insets::curve(&mut self.insets, self.at, item);
+        self.at = end;
+    }
+
+    fn tick(&mut self, events: &[u32], report: &channel::Report) -> io::Result<()> {
+        while self.kinds.front().is_some_and(|(line, _)| *line <= report.line) {
+            self.kind = self.kinds.pop_front().map_or(self.kind, |(_, kind)| kind);
+        }
+        let (kind, pulse) = (self.kind, self.pulse);
+        let (thinner, insets) = (&mut self.thinner, &mut self.insets);
+        let mut written = Ok(());
+        let trace = &mut self.trace;
+        self.checker.tick_traced(events, &mut |clocks, x, z| {
+            thinner.push(kind, [f64::from(z) * pulse[0], f64::from(x) * pulse[1]]);
+            insets::visit(insets, z, x);
+            if let (Some(trace), Ok(())) = (trace.as_mut(), &written) {
+                written = writeln!(trace.writer(), "{},{x},{z}", measure::time_ns(clocks));
+            }
+        });
+        written
+    }
+
+    fn stopped(&mut self, line: u32) {
+        self.stops += 1;
+        self.last_stop = line;
+    }
+
+    fn progress(&mut self, bytes: u64) {
+        self.bar.set_position(bytes);
+    }
+}
