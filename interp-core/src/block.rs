@@ -10,7 +10,7 @@ use crate::curve::arc::Arc;
 use crate::curve::line::Line;
 use crate::curve::prepare_arc::{Metric, Prepared};
 use crate::curve::proportion::Proportion;
-use crate::math::{RADIAN_Q30, root_wide, scale, to_i64, to_u32, to_u64};
+use crate::math::{RADIAN_Q30, root_wide, scale, to_i64, to_u32};
 use crate::units::{Axis, Feedrate, Lattice, Length, Point, Sense};
 use heapless::Vec;
 
@@ -189,8 +189,11 @@ impl Builder {
                 Split::Halves(middle) => {
                     self.arc(middle, centre, sense, pace, &mut built);
                     self.arc(end, centre, sense, pace, &mut built);
-                    if let [first, _] = built.motions.as_mut_slice() {
+                    if let [first, second] = built.motions.as_mut_slice() {
                         first.continues = true;
+                        // one speed for the one curve that was programmed
+                        let limit = first.limit.min(second.limit);
+                        (first.limit, second.limit) = (limit, limit);
                     }
                 }
                 Split::Whole => self.arc(end, centre, sense, pace, &mut built),
@@ -317,7 +320,8 @@ struct Run {
 pub enum Split {
     /// In one: it turns by at most half a turn.
     Whole,
-    /// In two, joined at its half-way point, which lies at the mean of start and end radius.
+    /// In two, joined at its half-way point, which lies at the mean of start and end radius and is rounded to the
+    /// nanometre, a half toward plus infinity.
     Halves(Point),
     /// Not at all: the half-way point is past the range of [`Length`].
     OutOfRange,
@@ -342,28 +346,36 @@ pub fn split(start: Point, end: Point, centre: (i64, i64), sense: Sense) -> Spli
     if cross > 0 || (cross == 0 && along < 0) {
         return Split::Whole;
     }
-    let (radius_s, radius_e) = (length(sx, sz), length(ex, ez));
+    // radii with 16 fraction bits, and both vectors brought to one length, so that the bisector halves the angle
+    let (radius_s, radius_e) = (length(sx << 16, sz << 16), length(ex << 16, ez << 16));
     let mean = radius_s.wrapping_add(radius_e) >> 1;
-    // the better conditioned of two ways: against the sum of both radii, or square to the chord
+    let (sx, sz) = (sx.wrapping_mul(radius_e), sz.wrapping_mul(radius_e));
+    let (ex, ez) = (ex.wrapping_mul(radius_s), ez.wrapping_mul(radius_s));
+    // the better conditioned of two ways: against the sum of both, or square to their difference
     let opposite = (sx.wrapping_add(ex).wrapping_neg(), sz.wrapping_add(ez).wrapping_neg());
     let (cx, cz) = (ex.wrapping_sub(sx), ez.wrapping_sub(sz));
     let square = match sense {
         Sense::CounterClockwise => (cz.wrapping_neg(), cx),
         Sense::Clockwise => (cz, cx.wrapping_neg()),
     };
-    let direction = if length(opposite.0, opposite.1) > length(square.0, square.1) { opposite } else { square };
-    let reach = length(direction.0, direction.1);
+    let (x, z) = if length(opposite.0, opposite.1) > length(square.0, square.1) { opposite } else { square };
+    let bits = 128_u32.wrapping_sub(x.unsigned_abs().max(z.unsigned_abs()).leading_zeros());
+    let (x, z) = (x >> bits.saturating_sub(62), z >> bits.saturating_sub(62));
+    let reach = length(x, z).max(1) << 16;
     let place = |centre: i64, part: i128| {
-        let off = scale(part, mean, reach.max(1));
+        let off = scale(part, mean, reach);
         Length::from_nm(to_i64(i128::from(centre).wrapping_add(off)))
     };
-    match (place(centre.0, direction.0), place(centre.1, direction.1)) {
+    match (place(centre.0, x), place(centre.1, z)) {
         (Some(x), Some(z)) => Split::Halves(Point { x, z }),
         _ => Split::OutOfRange,
     }
 }
 
 fn length(x: i128, z: i128) -> i128 {
+    let bits = 128_u32.wrapping_sub(x.unsigned_abs().max(z.unsigned_abs()).leading_zeros());
+    let cut = bits.saturating_sub(62);
+    let (x, z) = (x >> cut, z >> cut);
     let square = x.wrapping_mul(x).wrapping_add(z.wrapping_mul(z));
-    i128::from(to_u64(i128::from(root_wide(square.unsigned_abs()))))
+    i128::from(root_wide(square.unsigned_abs())).wrapping_shl(cut)
 }

@@ -14,6 +14,7 @@ pub mod picture;
 pub mod program;
 pub mod report;
 pub mod turn;
+pub mod watch;
 
 /// The embedded demo program: a handle.
 pub const DEMO: &[u8] = include_bytes!("demo/handle.nc");

@@ -1,24 +1,22 @@
 //! The command `turn`: checks a program, runs it, measures its train, writes trace, report and pictures.
 
-use std::collections::VecDeque;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use feature_editor::codes::{Action, Feed, Format, Item};
+use feature_editor::codes::Format;
 use handcnc::background::parameters::Parameters;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use interp_core::channel;
-use interp_core::config::{Config, Machine};
-use interp_core::units::{Axis, Point, Sense};
-use measure::{Checker, Limits, Motion, PerAxis, PulseEquivalent, Report, Setup, Shape};
+use interp_core::config::Machine;
+use measure::Report;
 
-use crate::insets::{self, Chooser};
-use crate::lathe::{self, Observer};
+use crate::insets::Chooser;
+use crate::lathe;
 use crate::output::Pending;
-use crate::picture::{self, Drawing, Inset, Kind, Thinner};
+use crate::picture::{self, Drawing, Inset, Thinner};
 use crate::program::Program;
 use crate::report::{self, Run};
+use crate::watch::{Watch, Watched};
 use crate::{DEMO, machine_file, messages};
 
 /// Exit code: done.
@@ -30,8 +28,6 @@ pub const UNUSABLE: u8 = 2;
 
 /// Width of pictures, pixels.
 const WIDTH: u32 = 1600;
-/// Points of the path that a picture keeps.
-const PATH_POINTS: usize = 20_000;
 /// Warnings of one kind that a report lists.
 const WARNINGS_LISTED: usize = 100;
 
@@ -101,30 +97,17 @@ fn run(job: &Job) -> Result<(), Failure> {
     };
     let bar = progress(program.size());
     let (warnings, chooser) = check(&program, format, &parameters, &machine, &bar)?;
-    let pulse = [pulse_mm(&machine, Axis::Z), pulse_mm(&machine, Axis::X)];
     let trace = match &job.trace {
         Some(path) => Some(Pending::create(path)?),
         None => None,
     };
-    let mut watch = Watch {
-        checker: Checker::new(setup(&parameters, &machine)?).map_err(|error| Failure::Fault(error.to_string()))?,
-        at: parameters.start(),
-        kinds: VecDeque::new(),
-        kind: Kind::Rapid,
-        thinner: Thinner::new(pulse[0].max(pulse[1]) * 0.5, PATH_POINTS),
-        pulse,
-        insets: chooser.insets(pulse),
-        trace,
-        blocks: 0,
-        stops: 0,
-        last_stop: 0,
-        bar,
-    };
-    watch.begin(&machine, parameters.start())?;
+    bar.set_message("turning");
+    bar.set_position(0);
+    let mut watch = Watch::new(&parameters, &machine, chooser, trace, bar)?;
     let began = Instant::now();
     lathe::run(&program, format, &parameters, &machine, &mut watch)?;
     let wall = began.elapsed();
-    watch.bar.finish_and_clear();
+    watch.bar().finish_and_clear();
     conclude(job, &program, &name, watch, warnings, wall)
 }
 
@@ -208,14 +191,10 @@ fn conclude(
     mut warnings: Vec<String>,
     wall: Duration,
 ) -> Result<(), Failure> {
-    if watch.stops > 0 {
-        warnings.push(format!(
-            "line {}: programmed stop passed by, as there is no operator ({} in all)",
-            watch.last_stop, watch.stops
-        ));
+    if let Some((count, line)) = watch.stops() {
+        warnings.push(format!("line {line}: programmed stop passed by, as there is no operator ({count} in all)"));
     }
-    let Watch { checker, thinner, insets, trace, blocks, .. } = watch;
-    let report = checker.finish();
+    let Watched { report, thinner, insets, trace, blocks } = watch.finish();
     if report.faults.total() > 0 {
         let list: Vec<String> = report.faults.first().iter().map(ToString::to_string).collect();
         return Err(Failure::Fault(format!(
@@ -306,132 +285,4 @@ fn progress(size: u64) -> ProgressBar {
         bar.set_style(style);
     }
     bar
-}
-
-fn pulse_mm(machine: &Machine, axis: Axis) -> f64 {
-    let pulse = match axis {
-        Axis::X => machine.x.pulse,
-        Axis::Z => machine.z.pulse,
-    };
-    f64::from(pulse.numerator()) / f64::from(pulse.denominator()) * 1e-6
-}
-
-/// The checker's set-up: the parameters as they were typed, not as the interpolator holds them.
-fn setup(parameters: &Parameters, machine: &Machine) -> Result<Setup, Failure> {
-    let Config { x, z, event_min_ns } = parameters.config();
-    #[expect(clippy::cast_precision_loss, reason = "feeds of at most eleven digits")]
-    let limits = |axis: &interp_core::config::AxisConfig| Limits {
-        max_accel: f64::from(axis.max_accel) / 1e3,
-        max_feed: axis.max_feed.nm_per_min() as f64 / 1e6,
-        max_jump: f64::from(axis.max_jump) / 1e3,
-        pulse_width_ns: axis.pulse_width_ns,
-        dir_setup_ns: axis.dir_setup_ns,
-        dir_hold_ns: axis.dir_hold_ns,
-        min_space_ns: axis.min_space_ns,
-    };
-    let pulse = |axis: &interp_core::config::AxisConfig| PulseEquivalent {
-        num: axis.pulse.numerator(),
-        den: axis.pulse.denominator(),
-    };
-    let start = parameters.start();
-    Ok(Setup {
-        pulse_nm: PerAxis { x: pulse(&x), z: pulse(&z) },
-        start: PerAxis { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) },
-        start_nm: nm(start),
-        limits: PerAxis { x: limits(&x), z: limits(&z) },
-        event_min_ns,
-    })
-}
-
-fn nm(point: Point) -> PerAxis<i64> {
-    PerAxis { x: i64::from(point.x.nm()), z: i64::from(point.z.nm()) }
-}
-
-/// Watches a run: measures, traces, collects what is drawn.
-struct Watch {
-    checker: Checker,
-    /// Programmed position of the action compiled last.
-    at: Point,
-    /// Lines compiled ahead, with the kind of their motion.
-    kinds: VecDeque<(u32, Kind)>,
-    kind: Kind,
-    thinner: Thinner,
-    /// Z and X, mm.
-    pulse: [f64; 2],
-    insets: Vec<Inset>,
-    trace: Option<Pending>,
-    blocks: u64,
-    stops: u64,
-    last_stop: u32,
-    bar: ProgressBar,
-}
-
-impl Watch {
-    /// Notes the start.
-    fn begin(&mut self, machine: &Machine, start: Point) -> io::Result<()> {
-        let (x, z) = (machine.x.pulse.nearest(start.x), machine.z.pulse.nearest(start.z));
-        self.thinner.push(Kind::Rapid, [f64::from(z) * self.pulse[0], f64::from(x) * self.pulse[1]]);
-        insets::visit(&mut self.insets, z, x);
-        if let Some(trace) = &mut self.trace {
-            writeln!(trace.writer(), "time_ns,x,z\n0,{x},{z}")?;
-        }
-        self.bar.set_message("turning");
-        self.bar.set_position(0);
-        Ok(())
-    }
-}
-
-impl Observer for Watch {
-    fn compiled(&mut self, item: &Item, blocks: usize) {
-        let (shape, end, feed) = match item.action {
-            Action::Line { end, feed } => (Shape::Line, end, feed),
-            Action::Arc { end, centre, sense, feed } => {
-                let centre_nm = PerAxis { x: centre.x.nm(), z: centre.z.nm() };
-                (Shape::Arc { centre_nm, clockwise: sense == Sense::Clockwise }, end, feed)
-            }
-            _ => return self.checker.pause(),
-        };
-        #[expect(clippy::cast_precision_loss, reason = "feeds of at most eleven digits")]
-        let feed_mm_min = match feed {
-            Feed::Rapid => None,
-            Feed::PerMinute(feed) => Some(feed.nm_per_min() as f64 / 1e6),
-        };
-        self.checker.motion(Motion { line: item.line, shape, end_nm: nm(end), feed_mm_min });
-        let kind = match (shape, feed) {
-            (_, Feed::Rapid) => Kind::Rapid,
-            (Shape::Line, Feed::PerMinute(_)) => Kind::Feed,
-            (Shape::Arc { .. }, Feed::PerMinute(_)) => Kind::Arc,
-        };
-        self.blocks += u64::from(blocks > 0);
-        self.kinds.push_back((item.line, kind));
-        insets::curve(&mut self.insets, self.at, item);
-        self.at = end;
-    }
-
-    fn tick(&mut self, events: &[u32], report: &channel::Report) -> io::Result<()> {
-        while self.kinds.front().is_some_and(|(line, _)| *line <= report.line) {
-            self.kind = self.kinds.pop_front().map_or(self.kind, |(_, kind)| kind);
-        }
-        let (kind, pulse) = (self.kind, self.pulse);
-        let (thinner, insets) = (&mut self.thinner, &mut self.insets);
-        let mut written = Ok(());
-        let trace = &mut self.trace;
-        self.checker.tick_traced(events, &mut |clocks, x, z| {
-            thinner.push(kind, [f64::from(z) * pulse[0], f64::from(x) * pulse[1]]);
-            insets::visit(insets, z, x);
-            if let (Some(trace), Ok(())) = (trace.as_mut(), &written) {
-                written = writeln!(trace.writer(), "{},{x},{z}", measure::time_ns(clocks));
-            }
-        });
-        written
-    }
-
-    fn stopped(&mut self, line: u32) {
-        self.stops += 1;
-        self.last_stop = line;
-    }
-
-    fn progress(&mut self, bytes: u64) {
-        self.bar.set_position(bytes);
-    }
 }

@@ -8,7 +8,7 @@
 //!   axis steps only where the major one does: it is behind by a half for its own rounding and by up to one
 //!   pulse for the major axis's, and less than f = 4 can be faked. (A walk with minimum deviation along 3:4
 //!   does reach 3 where the ideal acceleration is nearly nothing.) So f = 4 for an axis in windows with a
-//!   step of the other one alone, else 2.
+//!   step of the other one alone, else 2; and 4 for both on arcs, where the axes change places.
 //! * **Wait**: an edge may be up to two shortest intervals of an event late, as edges keep clear of each
 //!   other and of the tick's border. At the largest speed v that is w = 2 v event_min pulses; the bounds
 //!   are wider by 2 w (second difference) and w (distance).
@@ -231,9 +231,9 @@ impl Accel {
 
     /// A step by `moved` in the tick in work; `paused` if a pause was told before it.
     #[inline]
-    pub(crate) fn edge(&mut self, moved: PerAxis<i32>, paused: bool) {
-        self.without.x = self.without.x.wrapping_add(u32::from(moved.x == 0));
-        self.without.z = self.without.z.wrapping_add(u32::from(moved.z == 0));
+    pub(crate) fn edge(&mut self, moved: PerAxis<i32>, paused: bool, round: bool) {
+        self.without.x = self.without.x.wrapping_add(u32::from(round || moved.x == 0));
+        self.without.z = self.without.z.wrapping_add(u32::from(round || moved.z == 0));
         if self.open > 0 {
             if paused && self.moved && self.open == 1 {
                 self.mark(self.last_edge, 1);

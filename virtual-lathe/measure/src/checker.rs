@@ -5,6 +5,7 @@ use crate::deviation::Deviation;
 use crate::fault::{FaultKind, Faults, Here};
 use crate::feed::Feed;
 use crate::follow::Follow;
+use crate::geometry::Curve;
 use crate::hash::Fnv;
 use crate::path::{Motion, Scale, Waypoint};
 use crate::pins::Port;
@@ -167,7 +168,8 @@ impl Checker {
         self.walked.take(seen.walked * self.per_nm, self.here);
         self.programmed.take(seen.programmed * self.per_nm, self.here);
         self.backward += u64::from(seen.backward);
-        self.accel.edge(moved, seen.paused);
+        let round = self.follow.piece().is_some_and(|piece| matches!(piece.curve, Curve::Arc(_)));
+        self.accel.edge(moved, seen.paused, round);
         if self.feed.due(self.here.clocks) {
             self.sample(moved);
         }
@@ -187,7 +189,7 @@ impl Checker {
         let point = scale.place(self.here.at);
         let foot = piece.curve.foot(point, scale.nm_x, scale.nm_z);
         let major = if foot.x_is_major { moved.x } else { moved.z };
-        if major != 0 {
+        if major != 0 && foot.settled {
             let mm = (piece.before + foot.progress) / 1e6;
             self.feed.sample(self.here.clocks, mm);
         }

@@ -3,7 +3,8 @@
 //! * **Sample**: a rising edge of the axis that is major at its place, with the length of walked curve up
 //!   to the foot in the direction of the minor axis. On a line that makes the progress exact: the foot
 //!   has the major axis's own coordinate, and the minor axis's rounding plays no part. On an arc the
-//!   rounding shows by at most 0.4 pulses where the major axis changes.
+//!   points within two pulses of a change of the major axis are no samples, since they may belong to the
+//!   other axis's walk.
 //! * **Window**: from a sample to the first sample at least 50 ms later, in the same motion; its speed is
 //!   the difference of lengths over the difference of times, both exact. Windows follow on each other
 //!   from the first sample of a motion. What is left at its end is not a window.
@@ -14,7 +15,8 @@
 //!     0.2 %. Ramps are not. A wrong plateau is, and its whole error shows.
 //!   - it is *due*: it begins and ends farther from both ends of the motion than v²/a + 2 pulses, twice
 //!     the ramp from standstill to the reference v with the acceleration a that the axes allow along the
-//!     path, and begins later than 2 v/a after a change of override (v: the largest feed of an axis).
+//!     path, begins later than 2 v/a after a change of override (v: the largest feed of an axis), and
+//!     the reference is at most 0.9 of what the axes allow, so that turning leaves them enough to speed up.
 //!     There the feed must be kept; so one that wavers, or is never reached, can't hide.
 //! * The error of a window is |v / reference - 1| in percent.
 //!
@@ -28,6 +30,10 @@ use crate::setup::CLOCKS_PER_SECOND;
 const WINDOW: u64 = CLOCKS_PER_SECOND as u64 / 20;
 /// Windows agree within this part of the speed.
 const STEADY: f64 = 0.002;
+
+/// Up to this part of what the axes allow the feed is due; nearer to it an arc takes the acceleration
+/// that the ramp would need.
+const CLEAR: f64 = 0.9;
 
 /// Errors of the feed.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -164,7 +170,10 @@ impl Feed {
         let ramp = reference * reference / target.accel + self.margin;
         let window = Window {
             speed: (mm - last.mm) / seconds(clocks - last.clocks),
-            due: last.mm >= ramp && target.length - mm >= ramp && last.clocks >= self.settled,
+            due: last.mm >= ramp
+                && target.length - mm >= ramp
+                && last.clocks >= self.settled
+                && reference <= CLEAR * target.allowed,
             end: clocks,
         };
         self.judge(Some(window));

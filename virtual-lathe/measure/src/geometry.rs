@@ -182,6 +182,9 @@ pub(crate) struct Foot {
     pub(crate) progress: f64,
     /// Whether X has more pulses per unit of curve here than Z.
     pub(crate) x_is_major: bool,
+    /// Whether the major axis is the same for two coarser pulses around. Else the point may belong to
+    /// the other axis's walk, and its foot is off by what that axis rounds.
+    pub(crate) settled: bool,
 }
 
 impl Curve {
@@ -230,7 +233,13 @@ impl Curve {
     /// the minor axis. `pulse_x` and `pulse_z` are the pulse equivalents in nm.
     pub(crate) fn foot(&self, point: Vector, pulse_x: f64, pulse_z: f64) -> Foot {
         let travel = self.travel(point);
-        let x_is_major = travel.x.abs() * pulse_z > travel.z.abs() * pulse_x;
+        let lead = travel.x.abs() * pulse_z - travel.z.abs() * pulse_x;
+        let x_is_major = lead > 0.0;
+        let settled = match self {
+            Self::Line(_) => true,
+            // over a length s of arc the lead changes by at most s / R times the root of both squares
+            Self::Arc(arc) => lead.abs() * arc.radius > 2.0 * pulse_x.max(pulse_z) * pulse_x.hypot(pulse_z),
+        };
         let progress = match self {
             Self::Line(line) => {
                 let from = point - line.start;
@@ -246,7 +255,7 @@ impl Curve {
                 })
             }
         };
-        Foot { progress, x_is_major }
+        Foot { progress, x_is_major, settled }
     }
 
     /// Largest part that X and Z take of the speed anywhere on the curve, 0 to 1 each.

@@ -6,7 +6,7 @@
 //!   the programmed centre.
 //! * **Piece**: what is walked in one go. An arc that turns by more than 180 degrees has two, which meet
 //!   at the lattice point nearest to the programmed point at half the sweep (its radius is the mean of
-//!   start and end radius). A piece whose rounded ends coincide makes no pulses and is left out.
+//!   start and end radius; like any programmed point it is a whole number of nanometres). A piece whose rounded ends coincide makes no pulses and is left out.
 //!
 //! Whether an arc turns by more than 180 degrees is told from the programmed points, in integers.
 
@@ -67,11 +67,12 @@ impl Scale {
         PerAxis { x: self.setup.pulse_nm.x.nearest(nm.x), z: self.setup.pulse_nm.z.nearest(nm.z) }
     }
 
-    /// As `nearest` for a place that is right to 1e-5 nm: what is 1e-4 nm short of a half is one.
-    #[expect(clippy::cast_possible_truncation, reason = "saturates; a place is far below 2^53 pulses")]
-    fn nearest_place(&self, place: Vector) -> PerAxis<i64> {
-        let round = |nm: f64, pulse: f64| ((nm + 1e-4) / pulse + 0.5).floor() as i64;
-        PerAxis { x: round(place.x, self.nm_x), z: round(place.z, self.nm_z) }
+    /// A place as a program would say it: to the nanometre, a half toward plus infinity. What is 1e-4 nm
+    /// short of a half is one, as the place is right to 1e-5 nm.
+    #[expect(clippy::cast_possible_truncation, reason = "saturates; a place is far below 2^53 nm")]
+    fn to_nanometre(place: Vector) -> PerAxis<i64> {
+        let round = |nm: f64| (nm + 0.5 + 1e-4).floor() as i64;
+        PerAxis { x: round(place.x), z: round(place.z) }
     }
 
     /// Place of a lattice point that may lie outside the range of positions.
@@ -196,7 +197,7 @@ impl Path {
         let (pieces, programmed) = match motion.shape {
             Shape::Arc { centre_nm, clockwise } if past_half => {
                 let half_nm = half_way(start_nm, end_nm, exact(centre_nm), clockwise);
-                let half = scale.nearest_place(half_nm);
+                let half = scale.nearest(Scale::to_nanometre(half_nm));
                 ([piece(from.at, half), piece(half, to.at)], (curve(start_nm, half_nm), Some(curve(half_nm, end_nm))))
             }
             Shape::Line | Shape::Arc { .. } => ([piece(from.at, to.at), None], (curve(start_nm, end_nm), None)),

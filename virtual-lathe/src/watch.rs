@@ -1,0 +1,200 @@
+//! Watches a run: measures every tick, writes the trace, collects what is drawn.
+
+use std::collections::VecDeque;
+use std::io::{self, Write};
+
+use feature_editor::codes::{Action, Feed, Item};
+use handcnc::background::parameters::Parameters;
+use indicatif::ProgressBar;
+use interp_core::channel;
+use interp_core::config::{AxisConfig, Config, Machine};
+use interp_core::units::{Axis, Point, Sense};
+use measure::{Checker, Limits, Motion, PerAxis, PulseEquivalent, Report, Setup, Shape};
+
+use crate::insets::{self, Chooser};
+use crate::lathe::Observer;
+use crate::output::Pending;
+use crate::picture::{Inset, Kind, Thinner};
+
+/// Points of the path that a picture keeps.
+const PATH_POINTS: usize = 20_000;
+
+/// Watches a run.
+pub struct Watch {
+    checker: Checker,
+    /// Programmed position of the action compiled last.
+    at: Point,
+    /// Lines compiled ahead, with the kind of their motion.
+    kinds: VecDeque<(u32, Kind)>,
+    kind: Kind,
+    thinner: Thinner,
+    /// Z and X, mm.
+    pulse: [f64; 2],
+    insets: Vec<Inset>,
+    trace: Option<Pending>,
+    blocks: u64,
+    stops: u64,
+    last_stop: u32,
+    bar: ProgressBar,
+}
+
+/// What a run left.
+pub struct Watched {
+    /// The checker's figures.
+    pub report: Report,
+    /// The path, thinned.
+    pub thinner: Thinner,
+    /// Places under magnification.
+    pub insets: Vec<Inset>,
+    /// The trace, written but not in its place.
+    pub trace: Option<Pending>,
+    /// Program blocks that move.
+    pub blocks: u64,
+}
+
+impl Watch {
+    /// Watches from the start; `chooser` has seen the program.
+    ///
+    /// # Errors
+    /// Those of writing the trace, and a set-up that the checker refuses.
+    pub fn new(
+        parameters: &Parameters,
+        machine: &Machine,
+        chooser: Chooser,
+        trace: Option<Pending>,
+        bar: ProgressBar,
+    ) -> io::Result<Self> {
+        let pulse = [pulse_mm(machine, Axis::Z), pulse_mm(machine, Axis::X)];
+        let start = parameters.start();
+        let mut checker = Checker::new(setup(parameters, machine)).map_err(io::Error::other)?;
+        checker.override_percent(u32::from(parameters.feed_override()));
+        let mut watch = Self {
+            checker,
+            at: start,
+            kinds: VecDeque::new(),
+            kind: Kind::Rapid,
+            thinner: Thinner::new(pulse[0].max(pulse[1]) * 0.5, PATH_POINTS),
+            pulse,
+            insets: chooser.insets(pulse),
+            trace,
+            blocks: 0,
+            stops: 0,
+            last_stop: 0,
+            bar,
+        };
+        let (x, z) = (machine.x.pulse.nearest(start.x), machine.z.pulse.nearest(start.z));
+        watch.thinner.push(Kind::Rapid, [f64::from(z) * pulse[0], f64::from(x) * pulse[1]]);
+        insets::visit(&mut watch.insets, z, x);
+        if let Some(trace) = &mut watch.trace {
+            writeln!(trace.writer(), "time_ns,x,z\n0,{x},{z}")?;
+        }
+        Ok(watch)
+    }
+
+    /// How many programmed stops were passed by, and the line of the last.
+    pub fn stops(&self) -> Option<(u64, u32)> {
+        (self.stops > 0).then_some((self.stops, self.last_stop))
+    }
+
+    /// The progress bar.
+    pub fn bar(&self) -> &ProgressBar {
+        &self.bar
+    }
+
+    /// Ends the measurement.
+    pub fn finish(self) -> Watched {
+        let Self { checker, thinner, insets, trace, blocks, .. } = self;
+        Watched { report: checker.finish(), thinner, insets, trace, blocks }
+    }
+}
+
+impl Observer for Watch {
+    fn compiled(&mut self, item: &Item, blocks: usize) {
+        let (shape, end, feed) = match item.action {
+            Action::Line { end, feed } => (Shape::Line, end, feed),
+            Action::Arc { end, centre, sense, feed } => {
+                let centre_nm = PerAxis { x: centre.x.nm(), z: centre.z.nm() };
+                (Shape::Arc { centre_nm, clockwise: sense == Sense::Clockwise }, end, feed)
+            }
+            _ => return self.checker.pause(),
+        };
+        #[expect(clippy::cast_precision_loss, reason = "feeds of at most eleven digits")]
+        let feed_mm_min = match feed {
+            Feed::Rapid => None,
+            Feed::PerMinute(feed) => Some(feed.nm_per_min() as f64 / 1e6),
+        };
+        self.checker.motion(Motion { line: item.line, shape, end_nm: nm(end), feed_mm_min });
+        let kind = match (shape, feed) {
+            (_, Feed::Rapid) => Kind::Rapid,
+            (Shape::Line, Feed::PerMinute(_)) => Kind::Feed,
+            (Shape::Arc { .. }, Feed::PerMinute(_)) => Kind::Arc,
+        };
+        self.blocks += u64::from(blocks > 0);
+        self.kinds.push_back((item.line, kind));
+        insets::curve(&mut self.insets, self.at, item);
+        self.at = end;
+    }
+
+    fn tick(&mut self, events: &[u32], report: &channel::Report) -> io::Result<()> {
+        while self.kinds.front().is_some_and(|(line, _)| *line <= report.line) {
+            self.kind = self.kinds.pop_front().map_or(self.kind, |(_, kind)| kind);
+        }
+        let (kind, pulse) = (self.kind, self.pulse);
+        let (thinner, insets) = (&mut self.thinner, &mut self.insets);
+        let mut written = Ok(());
+        let trace = &mut self.trace;
+        self.checker.tick_traced(events, &mut |clocks, x, z| {
+            thinner.push(kind, [f64::from(z) * pulse[0], f64::from(x) * pulse[1]]);
+            insets::visit(insets, z, x);
+            if let (Some(trace), Ok(())) = (trace.as_mut(), &written) {
+                written = writeln!(trace.writer(), "{},{x},{z}", measure::time_ns(clocks));
+            }
+        });
+        written
+    }
+
+    fn stopped(&mut self, line: u32) {
+        self.stops += 1;
+        self.last_stop = line;
+    }
+
+    fn progress(&mut self, bytes: u64) {
+        self.bar.set_position(bytes);
+    }
+}
+
+fn pulse_mm(machine: &Machine, axis: Axis) -> f64 {
+    let pulse = match axis {
+        Axis::X => machine.x.pulse,
+        Axis::Z => machine.z.pulse,
+    };
+    f64::from(pulse.numerator()) / f64::from(pulse.denominator()) * 1e-6
+}
+
+/// The checker's set-up: the parameters as they were typed, not as the interpolator holds them.
+fn setup(parameters: &Parameters, machine: &Machine) -> Setup {
+    let Config { x, z, event_min_ns } = parameters.config();
+    #[expect(clippy::cast_precision_loss, reason = "feeds of at most eleven digits")]
+    let limits = |axis: &AxisConfig| Limits {
+        max_accel: f64::from(axis.max_accel) / 1e3,
+        max_feed: axis.max_feed.nm_per_min() as f64 / 1e6,
+        max_jump: f64::from(axis.max_jump) / 1e3,
+        pulse_width_ns: axis.pulse_width_ns,
+        dir_setup_ns: axis.dir_setup_ns,
+        dir_hold_ns: axis.dir_hold_ns,
+        min_space_ns: axis.min_space_ns,
+    };
+    let pulse = |axis: &AxisConfig| PulseEquivalent { num: axis.pulse.numerator(), den: axis.pulse.denominator() };
+    let start = parameters.start();
+    Setup {
+        pulse_nm: PerAxis { x: pulse(&x), z: pulse(&z) },
+        start: PerAxis { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) },
+        start_nm: nm(start),
+        limits: PerAxis { x: limits(&x), z: limits(&z) },
+        event_min_ns,
+    }
+}
+
+fn nm(point: Point) -> PerAxis<i64> {
+    PerAxis { x: i64::from(point.x.nm()), z: i64::from(point.z.nm()) }
+}
