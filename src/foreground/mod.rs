@@ -26,6 +26,8 @@ pub enum Command {
     Start,
     /// Feed hold.
     Hold,
+    /// Brake, then forget all blocks, those in the queue included.
+    Reset,
     /// Feed override, percent, 0 to 200.
     FeedOverride(u16),
     /// Optional stops stop.
@@ -64,6 +66,10 @@ impl<'q> Foreground<'q> {
             // a start with nothing to start and a hold of nothing are requests without effect, and harmless
             Command::Start => drop(self.channel.start()),
             Command::Hold => drop(self.channel.hold()),
+            Command::Reset => {
+                self.channel.reset();
+                while self.blocks.dequeue().is_some() {}
+            }
             Command::FeedOverride(percent) => self.channel.set_feed_override(percent),
             Command::OptionalStop(on) => self.channel.set_optional_stop(on),
         }

@@ -180,7 +180,7 @@ pub fn run(
                 observer.stopped(report.line);
                 command_in.enqueue(Command::Start).map_err(|_| full())?;
             }
-            State::Idle | State::Filling | State::Running | State::Holding => {}
+            State::Idle | State::Filling | State::Running | State::Holding | State::Resetting => {}
         }
     }
 }

@@ -19,17 +19,23 @@ use runner::{Runner, Stretch};
 /// Blocks taken in one tick while a cycle fills the look-ahead.
 const FILL_PER_TICK: usize = 16;
 
+/// Ticks without a new block after which a cycle begins although neither the look-ahead is full nor the program's end
+/// known: the sender waits.
+const FILL_PATIENCE: u32 = 50;
+
 /// What the channel is doing.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum State {
     /// Nothing; waits for cycle start.
     Idle,
-    /// Cycle start was given; the look-ahead fills.
+    /// Cycle start was given; the look-ahead fills. Also where a program that arrives bit by bit has run dry.
     Filling,
     /// Executes blocks.
     Running,
     /// Feed hold: brakes or stands.
     Holding,
+    /// Reset: brakes, then forgets all blocks and is idle.
+    Resetting,
     /// A programmed stop: waits for cycle start.
     Stopped,
     /// The program is over.
@@ -88,6 +94,8 @@ pub struct Channel<const N: usize> {
     /// Speed below which any axis may start or stop at once.
     rest: Speed,
     starved: u32,
+    /// Ticks of filling since the last block came.
+    waited: u32,
 }
 
 impl<const N: usize> Channel<N> {
@@ -106,6 +114,7 @@ impl<const N: usize> Channel<N> {
             complete: false,
             rest: machine.x.jump.min(machine.z.jump),
             starved: 0,
+            waited: 0,
         }
     }
 
@@ -121,8 +130,16 @@ impl<const N: usize> Channel<N> {
                 self.state = State::Running;
                 true
             }
-            State::Filling | State::Running => false,
+            State::Filling | State::Running | State::Resetting => false,
         }
+    }
+
+    /// Brakes along the path to standstill, then forgets all blocks. The position stays true.
+    pub fn reset(&mut self) {
+        self.state = match self.state {
+            State::Idle | State::Ended => State::Idle,
+            State::Filling | State::Running | State::Holding | State::Stopped | State::Resetting => State::Resetting,
+        };
     }
 
     /// Feed hold: brakes along the path to standstill. False where nothing runs.
@@ -161,22 +178,28 @@ impl<const N: usize> Channel<N> {
 
     /// Makes one tick: takes blocks from `source`, gives events to `out`.
     pub fn tick(&mut self, source: &mut impl FnMut() -> Option<Block>, out: &mut impl FnMut(Event)) -> Report {
-        let in_cycle = matches!(self.state, State::Running | State::Holding | State::Stopped);
+        let in_cycle = matches!(self.state, State::Running | State::Holding | State::Stopped | State::Resetting);
         self.take(source);
         let mut output = None;
         if in_cycle {
             output = self.run(out);
         }
         self.shaper.end_tick(out);
-        if matches!(self.state, State::Filling) && (self.complete || !self.ahead.has_room()) {
-            self.state = State::Running;
+        if matches!(self.state, State::Filling) {
+            let dry = self.waited >= FILL_PATIENCE && !self.ahead.is_empty();
+            if self.complete || dry || !self.ahead.has_room() {
+                self.state = State::Running;
+            }
+        }
+        if matches!(self.state, State::Resetting) && self.speed == 0 {
+            self.forget();
         }
         Report { state: self.state, in_cycle, output, line: self.line, speed: self.speed }
     }
 
     /// Takes blocks and plans.
     fn take(&mut self, source: &mut impl FnMut() -> Option<Block>) {
-        if matches!(self.state, State::Idle | State::Ended) {
+        if matches!(self.state, State::Idle | State::Ended | State::Resetting) {
             return;
         }
         let mut taken = 0_usize;
@@ -191,6 +214,7 @@ impl<const N: usize> Channel<N> {
             self.ahead.push(block);
             taken = taken.wrapping_add(1);
         }
+        self.waited = if taken > 0 { 0 } else { self.waited.saturating_add(1) };
         let active = match &self.current {
             Current::Motion(active) => Some(&active.motion),
             Current::Nothing | Current::Dwell(_) => None,
@@ -201,14 +225,14 @@ impl<const N: usize> Channel<N> {
     /// Executes for one tick.
     fn run(&mut self, out: &mut impl FnMut(Event)) -> Option<Output> {
         let mut clock = 0_u32;
-        while clock < TICK_CLOCKS && matches!(self.state, State::Running | State::Holding) {
+        while clock < TICK_CLOCKS && matches!(self.state, State::Running | State::Holding | State::Resetting) {
             let left = TICK_CLOCKS.wrapping_sub(clock);
             match &mut self.current {
                 Current::Motion(_) => match self.go(clock, out) {
                     Some(used) => clock = clock.wrapping_add(used),
                     None => break,
                 },
-                Current::Dwell(_) if matches!(self.state, State::Holding) => break,
+                Current::Dwell(_) if !matches!(self.state, State::Running) => break,
                 Current::Dwell(clocks) => {
                     let used = crate::math::to_u32((*clocks).min(u64::from(left)));
                     *clocks = clocks.wrapping_sub(u64::from(used));
@@ -218,10 +242,13 @@ impl<const N: usize> Channel<N> {
                     }
                 }
                 Current::Nothing => {
-                    if matches!(self.state, State::Holding) {
+                    if !matches!(self.state, State::Running) {
                         break;
                     }
-                    let Some((block, entry)) = self.ahead.pop() else { break };
+                    let Some((block, entry)) = self.ahead.pop() else {
+                        self.state = State::Filling;
+                        break;
+                    };
                     self.line = block.line;
                     match block.work {
                         Work::Motion(motion) => self.begin(motion, entry),
@@ -243,6 +270,15 @@ impl<const N: usize> Channel<N> {
         None
     }
 
+    /// Forgets all blocks after a reset.
+    fn forget(&mut self) {
+        self.ahead.clear();
+        self.current = Current::Nothing;
+        self.complete = false;
+        self.line = 0;
+        self.state = State::Idle;
+    }
+
     /// Begins a motion: from standstill at its start speed, else at the speed that the one before left with.
     fn begin(&mut self, motion: Motion, entry: u64) {
         self.speed = if self.speed == 0 {
@@ -257,7 +293,7 @@ impl<const N: usize> Channel<N> {
 
     /// Advances the motion from `clock` on; the clocks used, or `None` where it stands for the rest of the tick.
     fn go(&mut self, clock: u32, out: &mut impl FnMut(Event)) -> Option<u32> {
-        let holding = matches!(self.state, State::Holding);
+        let holding = !matches!(self.state, State::Running);
         let Current::Motion(active) = &mut self.current else { return None };
         let target = if holding { 0 } else { pace(&active.motion, self.feed_override) };
         if self.speed == 0 {

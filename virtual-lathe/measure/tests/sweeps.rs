@@ -116,7 +116,10 @@ fn compare(of: Programmed) -> Result<(), TestCaseError> {
         let half = if clockwise { -turned / 2.0 } else { turned / 2.0 };
         let mean = f64::midpoint(distance(middle, start), distance(middle, end));
         let place = polar(middle, mean, angle(middle, start) + half);
-        corners.push((up(place), place));
+        // a pulse is a micrometre here, so a nanometre is a thousandth
+        let to_nm = |pulses: f64| (pulses * 1e3 + 0.5 + 1e-4).floor() / 1e3;
+        let told = (to_nm(place.0), to_nm(place.1));
+        corners.push((up(told), place));
     }
     corners.push((up(end), end));
     let mut points = vec![(whole(corners[0].0.0), whole(corners[0].0.1))];
