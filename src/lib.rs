@@ -1,5 +1,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
+// an overflow would be a panic in the foreground: sums wrap where a proof says they cannot, else saturate
+#![cfg_attr(not(test), deny(clippy::arithmetic_side_effects))]
 //! The portable half of the firmware: what the desktop runs, too.
 //!
 //! [`background`] turns program text into blocks and keeps the parameters; [`foreground`] executes the blocks tick

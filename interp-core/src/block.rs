@@ -93,7 +93,6 @@ pub struct Block {
 
 /// What a block does.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-#[expect(clippy::large_enum_variant, reason = "no allocation: the queue holds the largest")]
 pub enum Work {
     /// Moves.
     Motion(Motion),
@@ -159,9 +158,9 @@ pub struct Builder {
     heading: Option<Direction>,
 }
 
-/// The part of its acceleration that an arc's curvature may take: at most sqrt(0.998 a R), so that a sixteenth of the
+/// Thousandths of its acceleration that an arc's curvature may take: at most sqrt(0.998 a R), so that a sixteenth of the
 /// acceleration is always left to brake with.
-const CURVATURE_SHARE: (u128, u128) = (998, 1000);
+const CURVATURE_SHARE: u128 = 998;
 
 impl Builder {
     /// A builder that stands at `at`.
@@ -246,8 +245,7 @@ impl Builder {
                 let accel = self.machine.x.accel.min(self.machine.z.accel);
                 // v^2 = 0.998 a R; both sides with 24 fraction bits
                 let square = u128::from(accel).wrapping_mul(u128::from(arc.radius()));
-                let (share, of) = CURVATURE_SHARE;
-                let by_bend = to_u32(root_wide(square.wrapping_mul(share) / of));
+                let by_bend = to_u32(root_wide(square.wrapping_mul(CURVATURE_SHARE) / 1000));
                 let run = Run { length: arc.length().max(1), entry, exit, by_axis, by_bend, accel };
                 self.finish(Curve::Arc(arc), &run, pace, built);
             }
@@ -258,7 +256,7 @@ impl Builder {
     fn least(x: u32, z: u32, (ux, uz): Direction) -> (u32, Axis) {
         let along = |limit: u32, part: i64| {
             let part = part.unsigned_abs();
-            if part == 0 { u64::MAX } else { (u64::from(limit) << 30) / part }
+            (u64::from(limit) << 30).checked_div(part).unwrap_or(u64::MAX)
         };
         let (by_x, by_z) = (along(x, ux), along(z, uz));
         let axis = if by_x < by_z { Axis::X } else { Axis::Z };

@@ -126,7 +126,7 @@ impl AxisConfig {
             return Err(ConfigError::Range { axis });
         }
         let (width, space) = (clocks(self.pulse_width_ns).max(1), clocks(self.min_space_ns).max(1));
-        let limit_hz = CLOCKS_PER_SECOND / width.saturating_add(space).max(1);
+        let limit_hz = CLOCKS_PER_SECOND.checked_div(width.saturating_add(space)).unwrap_or(0);
         // pulses a second = nm/min * denominator / (60 * numerator), rounded up
         let per_minute = self.max_feed.nm_per_min().saturating_mul(u64::from(self.pulse.denominator()));
         let needed_hz = to_u32(per_minute.div_ceil(u64::from(self.pulse.numerator()).saturating_mul(60).max(1)));

@@ -12,6 +12,9 @@ use crate::block::{Curve, Motion, Speed};
 use crate::config::TICK_CLOCKS;
 use crate::math::{QUARTER_Q30, RADIAN_Q30, cosine_from_sine, root, sine, to_u32};
 
+/// Clocks of a tick.
+const TICK: u64 = TICK_CLOCKS as u64;
+
 /// A squared speed that stands for no limit.
 pub const UNLIMITED: u64 = 1 << 62;
 
@@ -38,7 +41,7 @@ const fn part(value: u32, clocks: u32) -> u32 {
     if clocks >= TICK_CLOCKS {
         return value;
     }
-    to_u32((value as u64).wrapping_mul(clocks as u64) / TICK_CLOCKS as u64)
+    to_u32((value as u64).wrapping_mul(clocks as u64) / TICK)
 }
 
 impl Motion {
@@ -149,8 +152,8 @@ impl Motion {
             }
         };
         let at_end = root(reached).max(1);
-        let mean = u64::from(speed).wrapping_add(u64::from(at_end)).max(1);
-        let time = left.saturating_mul(u64::from(TICK_CLOCKS).wrapping_mul(2)) / mean;
+        let mean = u64::from(speed).wrapping_add(u64::from(at_end));
+        let time = left.saturating_mul(2 * TICK).checked_div(mean).unwrap_or(0);
         Advance { length: left, clocks: to_u32(time).min(clocks), speed: at_end, done: true }
     }
 
@@ -176,7 +179,7 @@ const fn covered(from: Speed, to: Speed, clocks: u32) -> u64 {
     if clocks >= TICK_CLOCKS {
         return twice / 2;
     }
-    twice.wrapping_mul(clocks as u64) / (TICK_CLOCKS as u64).wrapping_mul(2)
+    twice.wrapping_mul(clocks as u64) / (2 * TICK)
 }
 
 /// `part / whole` with 30 fraction bits, for `part <= whole`.
@@ -184,9 +187,9 @@ const fn ratio_q30(part: u64, whole: u64) -> i64 {
     let bits = 64_u32.wrapping_sub(whole.leading_zeros());
     let cut = bits.saturating_sub(32);
     let (p, w) = (part >> cut, whole >> cut);
-    if w == 0 {
-        return 0;
-    }
-    let ratio = (p << 30) / w;
+    let ratio = match (p << 30).checked_div(w) {
+        Some(ratio) => ratio,
+        None => 0,
+    };
     if ratio > RADIAN_Q30.unsigned_abs() { RADIAN_Q30 } else { ratio.cast_signed() }
 }

@@ -1,6 +1,8 @@
 #![no_std]
 #![forbid(unsafe_code)]
-//! Interpolation on the pulse lattice.
+// an overflow would be a panic in the foreground: sums wrap where a proof says they cannot, else saturate
+#![cfg_attr(not(test), deny(clippy::arithmetic_side_effects))]
+#![doc = include_str!("../README.md")]
 pub mod block;
 pub mod channel;
 pub mod config;

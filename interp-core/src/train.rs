@@ -84,7 +84,6 @@ impl Event {
 
     /// Levels to write.
     pub const fn levels(self) -> Levels {
-        #[expect(clippy::cast_possible_truncation, reason = "the high half of 32 bits")]
         Levels((self.0 >> 16) as u16)
     }
 }

@@ -34,7 +34,7 @@ impl Length {
 
     /// `None` past ±2.1 m.
     pub const fn from_nm(nm: i64) -> Option<Self> {
-        if nm < -(Self::LIMIT_NM as i64) || nm > Self::LIMIT_NM as i64 {
+        if nm < (Self::LIMIT_NM as i64).wrapping_neg() || nm > Self::LIMIT_NM as i64 {
             return None;
         }
         #[expect(clippy::cast_possible_truncation, reason = "within ±2.1e9, checked above")]
@@ -136,12 +136,13 @@ impl PulseSize {
             return None;
         }
         let (mut a, mut b) = (numerator, denominator);
-        while b != 0 {
-            (a, b) = (b, a % b);
+        while let Some(rest) = a.checked_rem(b) {
+            (a, b) = (b, rest);
         }
-        let (n, d) = (numerator / a, denominator / a);
+        let (Some(n), Some(d)) = (numerator.checked_div(a), denominator.checked_div(a)) else { return None };
         let fits = n <= Self::MAX_NUMERATOR && d <= Self::MAX_DENOMINATOR;
-        let in_range = n as u64 >= 10 * d as u64 && n as u64 <= 1_000_000 * d as u64;
+        let (size, per) = (n as u64, d as u64);
+        let in_range = size >= per.wrapping_mul(10) && size <= per.wrapping_mul(1_000_000);
         if fits && in_range { Some(Self { numerator: n, denominator: d }) } else { None }
     }
 
@@ -164,10 +165,14 @@ impl PulseSize {
     /// assert_eq!(pulse.nearest(Length::from_nm(-1250).unwrap()), 0);
     /// ```
     pub const fn nearest(self, length: Length) -> i32 {
+        // |length| < 2^31, denominator <= 2^12, numerator <= 2^24: below 2^45
         let n = self.numerator as i64;
-        let twice = 2 * length.0 as i64 * self.denominator as i64 + n;
+        let twice = (length.0 as i64).wrapping_mul(2).wrapping_mul(self.denominator as i64).wrapping_add(n);
         #[expect(clippy::cast_possible_truncation, reason = "2.1e9 nm / 10 nm is below 2^28")]
-        let pulses = twice.div_euclid(2 * n) as i32;
+        let pulses = match twice.checked_div_euclid(n.wrapping_mul(2)) {
+            Some(pulses) => pulses as i32,
+            None => 0,
+        };
         pulses
     }
 }

@@ -78,7 +78,7 @@ fn walk(case: &Case) -> Option<(f64, u32)> {
     assert!(
         radius < 2.0 * coarse || swept > -1e-9,
         "{label}: went backward by {swept}, visited {:?}",
-        &visited[..visited.len().min(12)]
+        visited.get(..12)
     );
     let turned = length / radius;
     assert!(radius < 2.0 * coarse || (turned - swept).abs() < 1e-6, "{label}: swept {swept}, length says {turned}");

@@ -71,7 +71,7 @@ pub fn check(
         let read = lines.bytes();
         let Some(line) = lines.next_line()? else { break };
         checked.lines += 1;
-        if checked.lines % 1024 == 0 {
+        if checked.lines.is_multiple_of(1024) {
             progress(read);
         }
         let mut found = Vec::new();
@@ -171,7 +171,7 @@ pub fn run(
             observer.tick(&events, &report)?;
         }
         ticks += 1;
-        if ticks % 256 == 0 {
+        if ticks.is_multiple_of(256) {
             observer.progress(source.lines.bytes());
         }
         match report.state {

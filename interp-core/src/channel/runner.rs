@@ -82,8 +82,8 @@ impl Crossings {
     /// For a coordinate that goes from `from` to `to` (`to > from`) and passes `next` first.
     #[inline]
     fn new(from: i64, to: i64, next: i64, stretch: Stretch) -> Self {
-        let moved = to.wrapping_sub(from).unsigned_abs().max(1);
-        let spacing = (u64::from(stretch.clocks) << 32) / moved;
+        let moved = to.wrapping_sub(from).unsigned_abs();
+        let spacing = (u64::from(stretch.clocks) << 32).checked_div(moved).unwrap_or(0);
         let first = next.wrapping_sub(from).max(0).unsigned_abs();
         // first <= moved, so the product is at most clocks << 32
         let offset = first.wrapping_mul(spacing) >> 16;

@@ -119,11 +119,11 @@ impl Arc {
     /// Signs of travel in `octant`: X, Z.
     pub(crate) const fn signs(octant: u8, sense: Sense) -> (i8, i8) {
         // counter-clockwise X rises on the right half (octants 6, 7, 0, 1), Z falls on the upper half (0..=3)
-        let x = if octant.wrapping_add(2) & 7 < 4 { 1 } else { -1 };
-        let z = if octant < 4 { -1 } else { 1 };
+        let x: i8 = if octant.wrapping_add(2) & 7 < 4 { 1 } else { -1 };
+        let z: i8 = if octant < 4 { -1 } else { 1 };
         match sense {
             Sense::CounterClockwise => (x, z),
-            Sense::Clockwise => (-x, -z),
+            Sense::Clockwise => (x.wrapping_neg(), z.wrapping_neg()),
         }
     }
 

@@ -39,7 +39,6 @@ impl Line {
     /// A walker at the start.
     pub const fn walk(self) -> LineWalker {
         let (x, z) = (self.x.unsigned_abs(), self.z.unsigned_abs());
-        #[expect(clippy::cast_possible_truncation, reason = "a signum")]
         let (sx, sz) = (self.x.signum() as i8, self.z.signum() as i8);
         let (major, minor, straight, minor_sign) =
             if x > z { (x, z, Step { x: sx, z: 0 }, sz) } else { (z, x, Step { x: 0, z: sz }, sx) };

@@ -312,7 +312,7 @@ impl<'m> Preparation<'m> {
                 let earlier = Arc::octant_before(octant, self.sense);
                 let tangent = Arc::ends_at_tangent(earlier, self.sense);
                 let (num, den) = self.border(earlier, axis, tangent);
-                let reached = Self::before(num, den, -sign);
+                let reached = Self::before(num, den, sign.wrapping_neg());
                 // a point on an extreme belongs to the octant before it
                 let on_border = i128::from(reached).wrapping_mul(den) == num;
                 let skip = if !tangent && on_border { i32::from(sign) } else { 0 };
