@@ -111,9 +111,10 @@ impl Motion {
     /// `target`, so that the end can be met at the squared speed `exit`.
     pub fn advance(&self, speed: Speed, left: u64, exit: u64, target: Speed, clocks: u32) -> Advance {
         let rise = part(self.along(speed), clocks).max(1);
-        let fall = part(self.accel, clocks).max(1);
-        let wish = speed.saturating_add(rise).min(target);
-        let slowest = speed.saturating_sub(fall);
+        // toward the target no harder than turning leaves room for; for the exit as hard as it takes, which the plan
+        // keeps within that room except for what a tick rounds
+        let wish = target.max(speed.saturating_sub(rise)).min(speed.saturating_add(rise));
+        let slowest = speed.saturating_sub(part(self.accel, clocks).max(1));
         let ending = match self.full_bend() {
             None => self.brake_straight(speed, left, exit, rise),
             Some(_) => {

@@ -28,6 +28,9 @@ pub trait Observer {
     /// What the observer writes to.
     fn tick(&mut self, events: &[u32], report: &Report) -> io::Result<()>;
 
+    /// A command was given, to act from the next tick on.
+    fn commanded(&mut self, command: Command);
+
     /// A programmed stop was passed by.
     fn stopped(&mut self, line: u32);
 
@@ -138,6 +141,9 @@ impl Source {
 
 /// Runs a program that [`check`] found good, from cycle start to its end. Programmed stops are passed by.
 ///
+/// `commands` are given before the tick of the cycle (from 0) that stands with each, in this order. A hold needs a
+/// start behind it; after a reset the run is over.
+///
 /// # Errors
 /// Those of reading the program, and the observer's.
 pub fn run(
@@ -145,15 +151,18 @@ pub fn run(
     format: Format,
     parameters: &Parameters,
     machine: &Machine,
+    commands: &[(u64, Command)],
     observer: &mut impl Observer,
 ) -> io::Result<()> {
     let compiler = Compiler::new(parameters.settings(), format, machine);
     let position = compiler.lattice();
     let mut source = Source { lines: program.lines()?, compiler, ready: VecDeque::new(), line: 0, ended: false };
     let mut blocks = Queue::<Block, BLOCK_QUEUE>::new();
-    let mut commands = Queue::<Command, COMMAND_QUEUE>::new();
+    let mut queue = Queue::<Command, COMMAND_QUEUE>::new();
     let (mut block_in, block_out) = blocks.split();
-    let (mut command_in, command_out) = commands.split();
+    let (mut command_in, command_out) = queue.split();
+    let mut commands = commands.iter().peekable();
+    let mut cycle = 0_u64;
     let mut foreground = Foreground::new(machine, position, block_out, command_out);
     let full = || io::Error::other("the queue of commands is full");
     command_in.enqueue(Command::FeedOverride(parameters.feed_override())).map_err(|_| full())?;
@@ -165,22 +174,28 @@ pub fn run(
             let Some(block) = source.next(observer)? else { break };
             block_in.enqueue(block).map_err(|_| io::Error::other("the queue of blocks is full"))?;
         }
+        let running = !matches!(foreground.state(), State::Idle | State::Filling);
+        while let Some((_, command)) = commands.next_if(|(at, _)| running && *at <= cycle) {
+            observer.commanded(*command);
+            command_in.enqueue(*command).map_err(|_| full())?;
+        }
         events.clear();
         let report = foreground.tick(&mut |event| events.push(event.word()));
         if report.in_cycle {
             observer.tick(&events, &report)?;
+            cycle += 1;
         }
         ticks += 1;
         if ticks.is_multiple_of(256) {
             observer.progress(source.lines.bytes());
         }
         match report.state {
-            State::Ended => return finish(&mut foreground, observer, &mut events),
+            State::Ended | State::Idle => return finish(&mut foreground, observer, &mut events),
             State::Stopped => {
                 observer.stopped(report.line);
                 command_in.enqueue(Command::Start).map_err(|_| full())?;
             }
-            State::Idle | State::Filling | State::Running | State::Holding | State::Resetting => {}
+            State::Filling | State::Running | State::Holding | State::Resetting => {}
         }
     }
 }

@@ -105,7 +105,7 @@ fn run(job: &Job) -> Result<(), Failure> {
     bar.set_position(0);
     let mut watch = Watch::new(&parameters, &machine, chooser, trace, bar)?;
     let began = Instant::now();
-    lathe::run(&program, format, &parameters, &machine, &mut watch)?;
+    lathe::run(&program, format, &parameters, &machine, &[], &mut watch)?;
     let wall = began.elapsed();
     watch.bar().finish_and_clear();
     conclude(job, &program, &name, watch, warnings, wall)

@@ -5,8 +5,9 @@ use std::io::{self, Write};
 
 use feature_editor::codes::{Action, Feed, Item};
 use handcnc::background::parameters::Parameters;
+use handcnc::foreground::Command;
 use indicatif::ProgressBar;
-use interp_core::channel;
+use interp_core::channel::{self, State};
 use interp_core::config::{AxisConfig, Config, Machine};
 use interp_core::units::{Axis, Point, Sense};
 use measure::{Checker, Limits, Motion, PerAxis, PulseEquivalent, Report, Setup, Shape};
@@ -35,6 +36,10 @@ pub struct Watch {
     blocks: u64,
     stops: u64,
     last_stop: u32,
+    /// Feed override.
+    percent: u32,
+    /// Standing in a feed hold.
+    held: bool,
     bar: ProgressBar,
 }
 
@@ -80,6 +85,8 @@ impl Watch {
             blocks: 0,
             stops: 0,
             last_stop: 0,
+            percent: u32::from(parameters.feed_override()),
+            held: false,
             bar,
         };
         let (x, z) = (machine.x.pulse.nearest(start.x), machine.z.pulse.nearest(start.z));
@@ -150,7 +157,21 @@ impl Observer for Watch {
                 written = writeln!(trace.writer(), "{},{x},{z}", measure::time_ns(clocks));
             }
         });
+        let held = matches!(report.state, State::Holding) && report.speed == 0;
+        if held && !self.held {
+            self.checker.rest();
+        }
+        self.held = held;
         written
+    }
+
+    fn commanded(&mut self, command: Command) {
+        match command {
+            Command::FeedOverride(percent) => self.percent = u32::from(percent),
+            Command::Hold | Command::Reset => return self.checker.override_percent(0),
+            Command::Start | Command::OptionalStop(_) => {}
+        }
+        self.checker.override_percent(self.percent);
     }
 
     fn stopped(&mut self, line: u32) {

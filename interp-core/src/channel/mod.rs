@@ -242,7 +242,8 @@ impl<const N: usize> Channel<N> {
                     }
                 }
                 Current::Nothing => {
-                    if !matches!(self.state, State::Running) {
+                    // a hold brakes on over joints; it ends where the program stands anyway
+                    if !matches!(self.state, State::Running) && self.speed == 0 {
                         break;
                     }
                     let Some((block, entry)) = self.ahead.pop() else {

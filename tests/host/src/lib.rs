@@ -5,6 +5,7 @@ pub mod optimum;
 
 use feature_editor::codes::Item;
 use handcnc::background::parameters::Parameters;
+use handcnc::foreground::Command;
 use indicatif::ProgressBar;
 use interp_core::config::Machine;
 use measure::Report;
@@ -44,6 +45,14 @@ pub fn parameters(set: &[(&str, &str)]) -> Parameters {
 /// # Errors
 /// The messages of a refused program.
 pub fn run(text: &str, set: &[(&str, &str)]) -> Result<Run, Vec<String>> {
+    run_with(text, set, &[])
+}
+
+/// Checks and runs a program, with commands at ticks of its cycle.
+///
+/// # Errors
+/// The messages of a refused program.
+pub fn run_with(text: &str, set: &[(&str, &str)], commands: &[(u64, Command)]) -> Result<Run, Vec<String>> {
     let parameters = parameters(set);
     let machine = parameters.machine().map_err(|error| vec![error.to_string()])?;
     let program = Program::Text { name: "test".into(), text: text.as_bytes().to_vec() };
@@ -60,6 +69,6 @@ pub fn run(text: &str, set: &[(&str, &str)]) -> Result<Run, Vec<String>> {
         return Err(checked.findings.iter().map(|(finding, _)| message(finding)).collect());
     }
     let mut watch = Watch::new(&parameters, &machine, chooser, None, ProgressBar::hidden()).unwrap();
-    lathe::run(&program, format, &parameters, &machine, &mut watch).unwrap();
+    lathe::run(&program, format, &parameters, &machine, commands, &mut watch).unwrap();
     Ok(Run { report: watch.finish().report, items, parameters, machine })
 }

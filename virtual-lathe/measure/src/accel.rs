@@ -253,14 +253,19 @@ impl Accel {
         }
     }
 
+    /// The axes stand since the last edge: one jump led there, one will lead away.
+    pub(crate) fn rest(&mut self) {
+        match self.open {
+            0 => self.mark(self.last_edge - 1, 2),
+            1 => self.mark(self.tick, 1),
+            _ => {}
+        }
+    }
+
     /// The tick in work ends with the position in `here`.
     pub(crate) fn boundary(&mut self, here: Here, faults: &mut Faults) {
         if self.moved && self.tick - self.last_edge == REST {
-            match self.open {
-                0 => self.mark(self.last_edge - 1, 2),
-                1 => self.mark(self.tick, 1),
-                _ => {}
-            }
+            self.rest();
         }
         self.tick += 1;
         if let Some(boundary) = self.ring.get_mut(slot(self.tick, RING)) {

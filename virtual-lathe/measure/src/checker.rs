@@ -93,6 +93,12 @@ impl Checker {
         self.follow.pause();
     }
 
+    /// The axes stand since the last edge, at the operator's word: one jump led there, one will lead away. A rest of
+    /// 20 ms is seen without it; a shorter one only shows in that it was told.
+    pub fn rest(&mut self) {
+        self.accel.rest();
+    }
+
     /// Tells that from the next tick on the feed is scaled by `percent`.
     pub fn override_percent(&mut self, percent: u32) {
         self.feed.override_percent(percent, self.here.clocks);
