@@ -72,3 +72,28 @@ pub fn run_with(text: &str, set: &[(&str, &str)], commands: &[(u64, Command)]) -
     lathe::run(&program, format, &parameters, &machine, commands, &mut watch).unwrap();
     Ok(Run { report: watch.finish().report, items, parameters, machine })
 }
+
+/// The train of a program: the events of each tick of its cycle.
+///
+/// # Panics
+/// Where the program or a parameter is refused.
+pub fn train(text: &str, set: &[(&str, &str)], commands: &[(u64, Command)]) -> Vec<Vec<u32>> {
+    struct Recorder(Vec<Vec<u32>>);
+    impl lathe::Observer for Recorder {
+        fn compiled(&mut self, _: &Item, _: usize) {}
+        fn tick(&mut self, events: &[u32], _: &interp_core::channel::Report) -> std::io::Result<()> {
+            self.0.push(events.to_vec());
+            Ok(())
+        }
+        fn commanded(&mut self, _: Command) {}
+        fn stopped(&mut self, _: u32) {}
+        fn progress(&mut self, _: u64) {}
+    }
+    let parameters = parameters(set);
+    let machine = parameters.machine().unwrap();
+    let program = Program::Text { name: "test".into(), text: text.as_bytes().to_vec() };
+    let format = program.detect().unwrap();
+    let mut recorder = Recorder(Vec::new());
+    lathe::run(&program, format, &parameters, &machine, commands, &mut recorder).unwrap();
+    recorder.0
+}
