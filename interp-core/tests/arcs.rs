@@ -164,3 +164,41 @@ fn small_arcs_in_full() {
     }
     assert!(walked > 100_000, "only {walked} arcs walked");
 }
+
+/// The largest radii with the finest pulses: too long to walk whole, so a stretch after each of many starts.
+#[test]
+fn the_largest_arcs_with_the_finest_pulses_stay_on_the_circle() {
+    for (px, pz) in [((10, 1), (10, 1)), ((10, 1), (1280, 1)), ((41, 4), (31, 3)), ((1_000_000, 1), (1_000_000, 1))] {
+        let pulses = (PulseSize::new(px.0, px.1).unwrap(), PulseSize::new(pz.0, pz.1).unwrap());
+        let metric = Metric::new(pulses.0, pulses.1);
+        let (x_nm, z_nm) = (nm(pulses.0), nm(pulses.1));
+        for start in 0..12 {
+            let radius = 2.05e9;
+            let place = |angle: f64| Lattice {
+                x: (radius * angle.sin() / x_nm + 0.5).floor() as i32,
+                z: (radius * angle.cos() / z_nm + 0.5).floor() as i32,
+            };
+            let from = f64::from(start) * 0.5 + 0.1;
+            let (a, b) = (place(from), place(from - 3.0));
+            let Prepared::Arc(arc, _) = metric.arc(a, b, (0, 0), Sense::Clockwise) else { panic!("no arc") };
+            let (ex, ez) = (f64::from(b.x - a.x) * x_nm, f64::from(b.z - a.z) * z_nm);
+            let (cx, cz) = (-f64::from(a.x) * x_nm, -f64::from(a.z) * z_nm);
+            let shift = 0.5 - (cx * ex + cz * ez) / (ex * ex + ez * ez);
+            let (cx, cz) = (cx + shift * ex, cz + shift * ez);
+            let circle = cx.hypot(cz);
+            let mut walker = arc.walk();
+            let (mut at, mut worst, mut count) = ((0_i32, 0_i32), 0.0_f64, 0);
+            while let Some(step) = walker.next_step() {
+                at = (at.0 + i32::from(step.x), at.1 + i32::from(step.z));
+                let off = (f64::from(at.0) * x_nm - cx).hypot(f64::from(at.1) * z_nm - cz) - circle;
+                worst = worst.max(off.abs() / x_nm.max(z_nm));
+                count += 1;
+                if count == 400_000 {
+                    break;
+                }
+            }
+            // coefficients of 64 bits leave a 32nd of a pulse at the very end of the range (see prepare_arc)
+            assert!(worst <= 0.5 + 0.04, "{px:?} {pz:?} from {from}: {worst}");
+        }
+    }
+}

@@ -32,7 +32,7 @@ fn rounded(value: f64, decimals: i32) -> f64 {
 pub fn json(report: &Report, run: &Run) -> String {
     let feed = match &report.feed_error_percent {
         Some(error) => json!({ "mean": rounded(error.mean, 6), "max": rounded(error.max, 6) }),
-        None => json!({ "mean": 0.0, "max": 0.0 }),
+        None => json!({ "mean": null, "max": null }),
     };
     let mut map = Map::new();
     map.insert("blocks".into(), run.blocks.into());

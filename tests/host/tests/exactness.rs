@@ -91,10 +91,9 @@ fn machine() -> impl Strategy<Value = Vec<(&'static str, &'static str)>> {
     ]
 }
 
-/// Deviation from the programmed curve that rounded ends may cause on a line: both axes half a pulse off, square to a
-/// line at 45 degrees, plus the walk's own half pulse seen at 45 degrees: 3 / (2 sqrt 2) = 1.061. On an arc the two
-/// programmed radii differ besides, here by up to 0.1 um.
-const PROGRAMMED: f64 = 1.061 + 0.1;
+/// Deviation from the programmed curve that rounded ends may cause: on a line at most sqrt(5) / 2 = 1.118 (both ends
+/// off by half a pulse in both axes, and the walk by half a pulse of the minor axis), on an arc 1 / sqrt(2) + 1/2.
+const PROGRAMMED: f64 = 1.2072;
 
 fn examine(text: &str, set: &[(&str, &str)]) -> Result<(), TestCaseError> {
     let run = run(text, set).map_err(|errors| TestCaseError::fail(format!("{errors:?}\n{text}")))?;
