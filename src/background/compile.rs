@@ -81,8 +81,8 @@ impl fmt::Display for Finding {
                     Axis::X => 'X',
                     Axis::Z => 'Z',
                 };
-                // nm a tick with 12 fraction bits to mm/min: * 60 / 4096 / 1000
-                let um_per_min = u64::from(limited.speed).saturating_mul(60_000) / 4_096;
+                // nm a tick with 12 fraction bits to um/min: 60 000 ticks, 1000 nm
+                let um_per_min = u64::from(limited.speed).saturating_mul(60) / 4_096;
                 let (whole, part) = (um_per_min / 1_000, um_per_min % 1_000 / 100);
                 write!(f, "F is limited to {whole}.{part} mm/min by the {axis} axis in this direction")
             }

@@ -215,13 +215,15 @@ fn conclude(
     if !pictures.is_empty() {
         files.extend(draw(&pictures, name, &report, &thinner, insets)?);
     }
-    print!("{}", report::summary(name, &report, &run));
+    let mut told = report::summary(name, &report, &run);
     for warning in &run.warnings {
-        println!("  warning     {warning}");
+        told.push_str(&format!("  warning     {warning}\n"));
     }
     for file in files {
-        println!("  wrote       {}", file.keep()?.display());
+        told.push_str(&format!("  wrote       {}\n", file.keep()?.display()));
     }
+    // the files are in place: a reader that has gone is no failure
+    let _ = io::stdout().lock().write_all(told.as_bytes());
     Ok(())
 }
 

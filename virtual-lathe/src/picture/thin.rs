@@ -128,7 +128,7 @@ pub(crate) fn thinned(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
 /// Keeps the path of a tool as tracks of few points, however many positions it is given.
 ///
 /// ```
-/// # use picture::{Kind, Thinner};
+/// # use virtual_lathe::picture::{Kind, Thinner};
 /// let mut thinner = Thinner::new(0.01, 1_000);
 /// for k in 0..=10_000 {
 ///     thinner.push(Kind::Feed, [f64::from(k) * 0.001, 5.0]);
