@@ -56,7 +56,7 @@ pub enum ConfigError {
         axis: Axis,
         /// Pulses a second at the axis's largest feed.
         needed_hz: u32,
-        /// Pulses a second that width and space allow.
+        /// Pulses a second that width, space and the waits of events allow.
         limit_hz: u32,
     },
     /// The pulse sizes differ by more than [`Config::MAX_PULSE_RATIO`].
@@ -119,14 +119,16 @@ impl AxisConfig {
     /// Range of `max_jump`, um/s.
     pub const JUMP_RANGE: (u32, u32) = (10, 100_000);
 
-    fn check(&self, axis: Axis) -> Result<AxisLimits, ConfigError> {
+    fn check(&self, axis: Axis, event_min: u32) -> Result<AxisLimits, ConfigError> {
         let accel_fits = self.max_accel >= Self::ACCEL_RANGE.0 && self.max_accel <= Self::ACCEL_RANGE.1;
         let jump_fits = self.max_jump >= Self::JUMP_RANGE.0 && self.max_jump <= Self::JUMP_RANGE.1;
         if !accel_fits || !jump_fits {
             return Err(ConfigError::Range { axis });
         }
         let (width, space) = (clocks(self.pulse_width_ns).max(1), clocks(self.min_space_ns).max(1));
-        let limit_hz = CLOCKS_PER_SECOND.checked_div(width.saturating_add(space)).unwrap_or(0);
+        // edges that wait for a tick's border or for another event catch up in what is left: four waits a tick
+        let waits = event_min.saturating_mul(4).saturating_mul(TICKS_PER_SECOND);
+        let limit_hz = CLOCKS_PER_SECOND.saturating_sub(waits).checked_div(width.saturating_add(space)).unwrap_or(0);
         // pulses a second = nm/min * denominator / (60 * numerator), rounded up
         let per_minute = self.max_feed.nm_per_min().saturating_mul(u64::from(self.pulse.denominator()));
         let needed_hz = to_u32(per_minute.div_ceil(u64::from(self.pulse.numerator()).saturating_mul(60).max(1)));
@@ -164,11 +166,8 @@ impl Config {
         if wide > narrow.saturating_mul(ratio) || narrow > wide.saturating_mul(ratio) {
             return Err(ConfigError::PulseRatio);
         }
-        Ok(Machine {
-            x: self.x.check(Axis::X)?,
-            z: self.z.check(Axis::Z)?,
-            event_min: clocks(self.event_min_ns).max(1),
-        })
+        let event_min = clocks(self.event_min_ns).max(1);
+        Ok(Machine { x: self.x.check(Axis::X, event_min)?, z: self.z.check(Axis::Z, event_min)?, event_min })
     }
 }
 

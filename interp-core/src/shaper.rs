@@ -149,16 +149,25 @@ impl Shaper {
         }
     }
 
-    /// Earliest rise of `axis` at or after `due`, the direction set.
+    /// Earliest rise of `axis` at or after `due`, its pin low and the direction set.
     #[inline]
     fn prepare(&mut self, axis: Axis, plus: bool, due: i64, out: &mut impl FnMut(Event)) -> i64 {
+        // the pin must have fallen, and when it did tells when it may rise: a fall may have had to wait
+        while self.pins(axis).fall != NEVER {
+            self.fall_next(out);
+        }
         if self.levels.plus(axis) != plus {
             self.turn(axis, plus, out);
         }
         let pins = self.pins(axis);
-        // a pin that is still high falls after its width and stays low for its space
-        let ready = if pins.fall == NEVER { pins.ready } else { pins.fall.saturating_add(pins.space) };
-        due.max(ready).max(pins.settled)
+        due.max(pins.ready).max(pins.settled)
+    }
+
+    /// Lowers what is due next.
+    fn fall_next(&mut self, out: &mut impl FnMut(Event)) {
+        let at = self.placed(self.x.fall.min(self.z.fall));
+        let levels = self.lowered(at);
+        self.put(at, levels, out);
     }
 
     /// Changes the direction of an axis as early as its last pulse allows.

@@ -463,6 +463,6 @@ mod tests {
         let mut parameters = Parameters::new();
         parameters.set("x.max_feed", "10000").unwrap();
         let error = parameters.machine().unwrap_err();
-        assert_eq!(error, ConfigError::PulseRate { axis: Axis::X, needed_hz: 133_334, limit_hz: 100_000 });
+        assert_eq!(error, ConfigError::PulseRate { axis: Axis::X, needed_hz: 133_334, limit_hz: 99_200 });
     }
 }

@@ -10,6 +10,8 @@ use crate::picture::{Inset, TrueCurve};
 
 /// Half the width of an inset, in coarser pulses.
 const HALF_WIDTH: f64 = 10.0;
+/// How far around its centre an inset collects, in half widths.
+const REACH: f64 = 4.0;
 /// Points and curves kept of one inset.
 const KEPT: usize = 4_000;
 
@@ -127,8 +129,8 @@ pub fn visit(insets: &mut [Inset], z: i32, x: i32) {
     for inset in insets {
         let off_z = f64::from(z) * inset.pulse[0] - inset.centre[0];
         let off_x = f64::from(x) * inset.pulse[1] - inset.centre[1];
-        // the panel is no higher than wide; a margin lets the path leave it
-        let reach = 1.3 * inset.half_width;
+        // a panel may be higher than wide; what lies outside it does no harm
+        let reach = REACH * inset.half_width;
         if off_z.abs() <= reach && off_x.abs() <= reach && inset.visited.len() < KEPT {
             inset.visited.push([z, x]);
         }
@@ -155,7 +157,7 @@ pub fn curve(insets: &mut [Inset], from: Point, item: &Item) {
         _ => return,
     };
     for inset in insets {
-        let reach = 1.3 * inset.half_width;
+        let reach = REACH * inset.half_width;
         let near = (0..2).all(|axis| {
             let (at, low, high) = (inset.centre.get(axis), low.get(axis), high.get(axis));
             matches!((at, low, high), (Some(at), Some(low), Some(high)) if at + reach >= *low && at - reach <= *high)

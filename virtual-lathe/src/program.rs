@@ -9,6 +9,9 @@ use feature_editor::codes::{Detector, Format};
 /// Bytes of a line that are kept; what is beyond is counted in the line's length only.
 const KEPT: usize = 1 << 24;
 
+/// What some editors put before a text.
+const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+
 /// Where a program's text comes from.
 #[derive(Clone, Debug)]
 pub enum Program {
@@ -118,11 +121,15 @@ impl Lines {
             any = true;
             let end = buffer.iter().position(|byte| *byte == b'\n');
             let take = end.unwrap_or(buffer.len());
+            let first = self.read == 0;
             let room = KEPT.saturating_sub(self.line.len()).min(take);
             self.line.extend_from_slice(buffer.get(..room).unwrap_or_default());
             let used = end.map_or(take, |end| end + 1);
             self.reader.consume(used);
             self.read += used as u64;
+            if first && self.line.starts_with(BYTE_ORDER_MARK) {
+                self.line.drain(..BYTE_ORDER_MARK.len());
+            }
             if end.is_some() {
                 return Ok(Some(&self.line));
             }

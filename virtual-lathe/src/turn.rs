@@ -12,7 +12,7 @@ use measure::Report;
 
 use crate::insets::Chooser;
 use crate::lathe;
-use crate::output::Pending;
+use crate::output::{Pending, Places};
 use crate::picture::{self, Drawing, Inset, Thinner};
 use crate::program::Program;
 use crate::report::{self, Run};
@@ -90,6 +90,14 @@ fn run(job: &Job) -> Result<(), Failure> {
         None => Program::Text { name: "handle.nc".into(), text: DEMO.to_vec() },
         Some(path) => Program::open(path).map_err(|error| Failure::Unusable(format!("{}: {error}", path.display())))?,
     };
+    let pictures = pictures(job, &program);
+    let mut places = Places::default();
+    for input in job.file.iter().chain(&job.machine) {
+        places.input(input);
+    }
+    for output in job.trace.iter().chain(&job.report).chain(&pictures) {
+        places.output(output)?;
+    }
     let name = program.name();
     let format = match job.format {
         Some(format) => format,
@@ -108,7 +116,7 @@ fn run(job: &Job) -> Result<(), Failure> {
     lathe::run(&program, format, &parameters, &machine, &[], &mut watch)?;
     let wall = began.elapsed();
     watch.bar().finish_and_clear();
-    conclude(job, &program, &name, watch, warnings, wall)
+    conclude(job, &pictures, &name, watch, warnings, wall)
 }
 
 /// Reads machine file and settings; all errors are told.
@@ -185,7 +193,7 @@ fn check(
 /// Writes what was asked for, once the figures are in.
 fn conclude(
     job: &Job,
-    program: &Program,
+    pictures: &[PathBuf],
     name: &str,
     watch: Watch,
     mut warnings: Vec<String>,
@@ -211,9 +219,8 @@ fn conclude(
         file.writer().write_all(report::json(&report, &run).as_bytes())?;
         files.push(file);
     }
-    let pictures = pictures(job, program);
     if !pictures.is_empty() {
-        files.extend(draw(&pictures, name, &report, &thinner, insets)?);
+        files.extend(draw(pictures, name, &report, &thinner, insets)?);
     }
     let mut told = report::summary(name, &report, &run);
     for warning in &run.warnings {

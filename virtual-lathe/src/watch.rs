@@ -136,8 +136,10 @@ impl Observer for Watch {
             (Shape::Line, Feed::PerMinute(_)) => Kind::Feed,
             (Shape::Arc { .. }, Feed::PerMinute(_)) => Kind::Arc,
         };
-        self.blocks += u64::from(blocks > 0);
-        self.kinds.push_back((item.line, kind));
+        if blocks > 0 {
+            self.blocks += 1;
+            self.kinds.push_back((item.line, kind));
+        }
         insets::curve(&mut self.insets, self.at, item);
         self.at = end;
     }

@@ -9,6 +9,7 @@
 //!   pulse for the major axis's, and less than f = 4 can be faked. (A walk with minimum deviation along 3:4
 //!   does reach 3 where the ideal acceleration is nearly nothing.) So f = 4 for an axis in windows with a
 //!   step of the other one alone, else 2; and 4 for both on arcs, where the axes change places.
+//!   Where an axis turns round, its lag changes sides: at joints, starts and stops f is 2 more.
 //! * **Wait**: an edge may be up to two shortest intervals of an event late, as edges keep clear of each
 //!   other and of the tick's border. At the largest speed v that is w = 2 v event_min pulses; the bounds
 //!   are wider by 2 w (second difference) and w (distance).
@@ -42,6 +43,8 @@ const FIRST: u64 = 1024;
 const FAKED: i64 = 2;
 /// What it fakes beyond that for an axis that steps only along with the other.
 const FAKED_MINOR: i64 = 2;
+/// What it fakes beyond that where an axis may turn round at a joint.
+const FAKED_TURNING: i64 = 2;
 
 /// What holds at a boundary.
 #[derive(Copy, Clone, Debug, Default)]
@@ -148,7 +151,9 @@ impl Watch {
     fn bent(&mut self, bounds: Bounds, bend: i64, jumps: u32, minor: i64, here: Here, faults: &mut Faults) {
         let bound = bounds.bend + f64::from(jumps) * bounds.jump;
         self.excess = self.excess.max(bend as f64 - bound);
-        let bound = floor(bound + 2.0 * self.wait) + minor;
+        // an axis that turns round lags on one side before and on the other side after
+        let turned = if jumps == 0 { 0 } else { FAKED_TURNING };
+        let bound = floor(bound + 2.0 * self.wait) + minor + turned;
         if bend <= bound {
             return;
         }

@@ -18,9 +18,12 @@ use crate::path::{Motion, Path, Piece, Scale, Waypoint};
 use crate::setup::PerAxis;
 use std::collections::VecDeque;
 
+/// What was told and is not in work yet. Motions without pulses, and pauses after a pause, leave no trace, so that
+/// any number of them may be told ahead.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "pauses are rare")]
 enum Told {
-    Motion(Motion),
+    Motion(Path),
     Pause,
 }
 
@@ -44,7 +47,7 @@ pub(crate) struct Seen {
 pub(crate) struct Follow {
     pub(crate) scale: Scale,
     told: VecDeque<Told>,
-    /// Where the next motion taken from the queue starts.
+    /// Where the last motion told ends.
     from: Waypoint,
     /// The next motion with pulses, if it is known, and whether a pause stands before it.
     next: Option<Path>,
@@ -73,11 +76,15 @@ impl Follow {
     }
 
     pub(crate) fn motion(&mut self, motion: Motion) {
-        self.told.push_back(Told::Motion(motion));
+        let (path, to) = Path::new(&self.scale, self.from, &motion);
+        self.from = to;
+        self.told.extend(path.map(Told::Motion));
     }
 
     pub(crate) fn pause(&mut self) {
-        self.told.push_back(Told::Pause);
+        if !matches!(self.told.back(), Some(Told::Pause)) {
+            self.told.push_back(Told::Pause);
+        }
     }
 
     /// The motion in work, or the last one.
@@ -96,9 +103,7 @@ impl Follow {
             match self.told.pop_front() {
                 None => return,
                 Some(Told::Pause) => self.pause = true,
-                Some(Told::Motion(motion)) => {
-                    (self.next, self.from) = Path::new(&self.scale, self.from, &motion);
-                }
+                Some(Told::Motion(path)) => self.next = Some(path),
             }
         }
     }
@@ -189,7 +194,7 @@ impl Follow {
         left
     }
 
-    /// The rounded end of the last motion told; only after `left`.
+    /// The rounded end of the last motion told.
     pub(crate) fn last_end(&self) -> PerAxis<i64> {
         self.from.at
     }
