@@ -8,7 +8,7 @@
 use crate::config::{FRACTION_BITS, Machine, speed_of};
 use crate::curve::arc::Arc;
 use crate::curve::line::Line;
-use crate::curve::prepare_arc::{Metric, Prepared};
+use crate::curve::prepare_arc::{Metric, Prepared, Reach};
 use crate::curve::proportion::Proportion;
 use crate::math::{RADIAN_Q30, root_wide, scale, to_i64, to_u32};
 use crate::units::{Axis, Feedrate, Lattice, Length, Point, Sense};
@@ -184,10 +184,10 @@ impl Builder {
         let mut built = Built::default();
         match path {
             Path::Line => self.line(end, pace, &mut built),
-            Path::Arc { centre, sense } => match split(self.at, end, centre, sense) {
+            Path::Arc { centre, sense } => match self.split(end, centre, sense) {
                 Split::Halves(middle) => {
-                    self.arc(middle, centre, sense, pace, &mut built);
-                    self.arc(end, centre, sense, pace, &mut built);
+                    self.arc(middle, centre, sense, Reach::Short, pace, &mut built);
+                    self.arc(end, centre, sense, Reach::Short, pace, &mut built);
                     if let [first, second] = built.motions.as_mut_slice() {
                         first.continues = true;
                         // one speed for the one curve that was programmed
@@ -195,7 +195,7 @@ impl Builder {
                         (first.limit, second.limit) = (limit, limit);
                     }
                 }
-                Split::Whole => self.arc(end, centre, sense, pace, &mut built),
+                Split::Whole(reach) => self.arc(end, centre, sense, reach, pace, &mut built),
                 Split::OutOfRange => built.out_of_range = true,
             },
         }
@@ -232,9 +232,32 @@ impl Builder {
         self.finish(Curve::Line(line, steps), &run, pace, built);
     }
 
-    fn arc(&mut self, end: Point, centre: (i64, i64), sense: Sense, pace: Pace, built: &mut Built) {
+    /// How an arc to `end` is walked: a long one whole where that moves its centre by at most a 16th of a coarser
+    /// pulse, else as two.
+    fn split(&self, end: Point, centre: (i64, i64), sense: Sense) -> Split {
+        let halves = split(self.at, end, centre, sense);
+        if matches!(halves, Split::Whole(_)) {
+            return halves;
+        }
         let to = self.rounded(end);
-        match self.metric.arc(self.lattice, to, centre, sense) {
+        // from the programmed centre to the rounded ends, nm with 12 fraction bits
+        let from = |at: Lattice| {
+            let (x, z) = self.span(at.x, at.z);
+            (x.wrapping_sub(i128::from(centre.0) << 12), z.wrapping_sub(i128::from(centre.1) << 12))
+        };
+        let ((sx, sz), (ex, ez)) = (from(self.lattice), from(to));
+        let (radius_s, radius_e) = (length(sx << 8, sz << 8), length(ex << 8, ez << 8));
+        let chord = length(ex.wrapping_sub(sx), ez.wrapping_sub(sz));
+        let (px, pz) = self.span(1, 1);
+        // the centre moves along the chord by (r1 - r0) R / chord
+        let moved = radius_e.wrapping_sub(radius_s).saturating_abs().saturating_mul(radius_s >> 8);
+        let allowed = chord.saturating_mul(px.max(pz) << 4);
+        if moved <= allowed { Split::Whole(Reach::Long) } else { halves }
+    }
+
+    fn arc(&mut self, end: Point, centre: (i64, i64), sense: Sense, reach: Reach, pace: Pace, built: &mut Built) {
+        let to = self.rounded(end);
+        match self.metric.arc(self.lattice, to, centre, sense, reach) {
             Prepared::Nothing => self.at = end,
             Prepared::Chord => self.line(end, pace, built),
             Prepared::Arc(arc, turn) => {
@@ -316,8 +339,8 @@ struct Run {
 /// How an arc is walked.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Split {
-    /// In one: it turns by at most half a turn.
-    Whole,
+    /// In one.
+    Whole(Reach),
     /// In two, joined at its half-way point, which lies at the mean of start and end radius and is rounded to the
     /// nanometre, a half toward plus infinity.
     Halves(Point),
@@ -342,7 +365,7 @@ pub fn split(start: Point, end: Point, centre: (i64, i64), sense: Sense) -> Spli
     let cross = turn(sz.wrapping_mul(ex).wrapping_sub(sx.wrapping_mul(ez)));
     let along = sx.wrapping_mul(ex).wrapping_add(sz.wrapping_mul(ez));
     if cross > 0 || (cross == 0 && along < 0) {
-        return Split::Whole;
+        return Split::Whole(Reach::Short);
     }
     // radii with 16 fraction bits, and both vectors brought to one length, so that the bisector halves the angle
     let (radius_s, radius_e) = (length(sx << 16, sz << 16), length(ex << 16, ez << 16));
@@ -358,7 +381,7 @@ pub fn split(start: Point, end: Point, centre: (i64, i64), sense: Sense) -> Spli
     };
     let (x, z) = if length(opposite.0, opposite.1) > length(square.0, square.1) { opposite } else { square };
     let bits = 128_u32.wrapping_sub(x.unsigned_abs().max(z.unsigned_abs()).leading_zeros());
-    let (x, z) = (x >> bits.saturating_sub(62), z >> bits.saturating_sub(62));
+    let (x, z) = (x.wrapping_shr(bits.saturating_sub(62)), z.wrapping_shr(bits.saturating_sub(62)));
     let reach = length(x, z).max(1) << 16;
     let place = |centre: i64, part: i128| {
         let off = scale(part, mean, reach);
@@ -373,7 +396,7 @@ pub fn split(start: Point, end: Point, centre: (i64, i64), sense: Sense) -> Spli
 fn length(x: i128, z: i128) -> i128 {
     let bits = 128_u32.wrapping_sub(x.unsigned_abs().max(z.unsigned_abs()).leading_zeros());
     let cut = bits.saturating_sub(62);
-    let (x, z) = (x >> cut, z >> cut);
+    let (x, z) = (x.wrapping_shr(cut), z.wrapping_shr(cut));
     let square = x.wrapping_mul(x).wrapping_add(z.wrapping_mul(z));
     i128::from(root_wide(square.unsigned_abs())).wrapping_shl(cut)
 }

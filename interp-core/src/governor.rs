@@ -72,7 +72,8 @@ impl Motion {
                     return bend;
                 }
                 let cut = 64_u32.wrapping_sub(radius.leading_zeros()).saturating_sub(32);
-                let twice = ((distance >> cut) << 31).checked_div(radius >> cut).unwrap_or(u64::MAX);
+                let twice =
+                    (distance.wrapping_shr(cut) << 31).checked_div(radius.wrapping_shr(cut)).unwrap_or(u64::MAX);
                 let angle = i64::try_from(twice).unwrap_or(i64::MAX);
                 if angle >= QUARTER_Q30 {
                     return bend;
@@ -187,7 +188,7 @@ const fn covered(from: Speed, to: Speed, clocks: u32) -> u64 {
 const fn ratio_q30(part: u64, whole: u64) -> i64 {
     let bits = 64_u32.wrapping_sub(whole.leading_zeros());
     let cut = bits.saturating_sub(32);
-    let (p, w) = (part >> cut, whole >> cut);
+    let (p, w) = (part.wrapping_shr(cut), whole.wrapping_shr(cut));
     let ratio = match (p << 30).checked_div(w) {
         Some(ratio) => ratio,
         None => 0,

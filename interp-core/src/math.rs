@@ -170,9 +170,9 @@ pub fn angle_of(across: i128, up: i128) -> i64 {
     while shift < 56 {
         let step = match ARC_TANGENTS_Q60.get(shift as usize) {
             Some(listed) => *listed,
-            None => (1_i64 << 60) >> shift,
+            None => (1_i64 << 60).wrapping_shr(shift),
         };
-        let (dx, dy) = (x >> shift, y >> shift);
+        let (dx, dy) = (x.wrapping_shr(shift), y.wrapping_shr(shift));
         if y > 0 {
             (x, y) = (x.wrapping_add(dy), y.wrapping_sub(dx));
             angle = angle.wrapping_add(step);

@@ -177,7 +177,7 @@ impl ArcRunner {
         };
         // keep the product with a sine under 2^63
         let excess = 64_u32.wrapping_sub(radius.leading_zeros()).saturating_sub(32);
-        self.radius = (radius >> excess).cast_signed();
+        self.radius = radius.wrapping_shr(excess).cast_signed();
         self.radius_shift = excess;
         self.angle = angle;
         self.zone_from = from;
@@ -202,7 +202,7 @@ impl ArcRunner {
         let turned = self.arc.timeline.angle.of(length.wrapping_sub(self.zone_from)).cast_signed();
         let place = sine(self.angle.wrapping_add(turned)).wrapping_mul(self.radius);
         // 30 fraction bits of the sine go; the shift brings the cut-off bits back
-        place >> (30_u32.wrapping_sub(self.radius_shift))
+        place.wrapping_shr(30_u32.wrapping_sub(self.radius_shift))
     }
 
     #[inline]
@@ -264,7 +264,7 @@ impl ArcRunner {
 /// `clocks * part / whole`, at most `clocks`.
 fn share(clocks: u32, part: u64, whole: u64) -> u32 {
     let bits = 64_u32.wrapping_sub(whole.leading_zeros()).saturating_sub(48);
-    let (part, whole) = (part >> bits, (whole >> bits).max(1));
+    let (part, whole) = (part.wrapping_shr(bits), whole.wrapping_shr(bits).max(1));
     let scaled = u64::from(clocks).wrapping_mul(part).checked_div(whole).unwrap_or(0);
     to_u32(scaled).min(clocks)
 }

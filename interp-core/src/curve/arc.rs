@@ -16,16 +16,16 @@
 //!        5 / 6 | 7 \    1, 2, 5, 6   Z  steeper in X
 //! ```
 //!
-//! An arc here turns by at most half a turn (longer ones are two blocks), so it visits at most six octants and four
-//! *zones* (pairs of octants with one major axis).
+//! An arc turns by at most a whole turn and so visits at most nine octants. Two neighbouring octants with one major
+//! axis are a *zone*.
 
 use super::proportion::Proportion;
 use crate::units::{Axis, Sense};
 
 /// Largest number of octants that an arc visits.
-pub const MAX_PIECES: usize = 6;
+pub const MAX_PIECES: usize = 9;
 
-/// A prepared arc of at most half a turn.
+/// A prepared arc of at most a whole turn.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Arc {
     /// Weight of X: `F = a x^2 + b z^2 - c x - d z`.

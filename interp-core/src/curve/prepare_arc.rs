@@ -35,6 +35,15 @@ pub enum Prepared {
     Chord,
 }
 
+/// Which of the two ways round an arc takes.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// At most half a turn.
+    Short,
+    /// More than half a turn, up to a whole one.
+    Long,
+}
+
 /// Angles of an arc, radians with 60 fraction bits.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Turn {
@@ -56,18 +65,19 @@ impl Turn {
 
     /// Direction of travel after turning by `swept`: X and Z parts of a unit vector, 30 fraction bits.
     pub fn heading(&self, swept: i64) -> (i64, i64) {
-        let angle = self.start.wrapping_add(self.along(swept));
-        let (sine, cosine) = unit(angle);
+        let whole = i128::from(HALF_TURN_Q60).wrapping_mul(2);
+        let angle = i128::from(self.start).wrapping_add(i128::from(self.along(swept)));
+        let (sine, cosine) = unit(to_i64(angle.checked_rem_euclid(whole).unwrap_or(0)));
         (self.along(cosine), self.along(sine.wrapping_neg()))
     }
 
     /// The largest X part and the largest Z part that the direction of travel has anywhere on the arc.
     pub fn extent(&self) -> (i64, i64) {
         let (first, last) = (self.heading(0), self.heading(self.sweep));
-        let mut x = first.0.abs().max(last.0.abs());
-        let mut z = first.1.abs().max(last.1.abs());
-        for quarter in -4..=4_i64 {
-            let off = i128::from(quarter.wrapping_mul(HALF_TURN_Q60 >> 1)).wrapping_sub(i128::from(self.start));
+        let mut x = first.0.wrapping_abs().max(last.0.wrapping_abs());
+        let mut z = first.1.wrapping_abs().max(last.1.wrapping_abs());
+        for quarter in -6..=6_i128 {
+            let off = quarter.wrapping_mul(i128::from(HALF_TURN_Q60 >> 1)).wrapping_sub(i128::from(self.start));
             let swept = if self.sense == Sense::CounterClockwise { off } else { off.wrapping_neg() };
             if (0..=i128::from(self.sweep)).contains(&swept) {
                 if quarter & 1 == 0 { x = RADIAN_Q30 } else { z = RADIAN_Q30 }
@@ -83,7 +93,7 @@ fn unit(angle: i64) -> (i64, i64) {
     let quarters = angle.wrapping_add(quarter >> 1).checked_div_euclid(quarter).unwrap_or(0);
     let rest = angle.wrapping_sub(quarters.wrapping_mul(quarter)) >> 30;
     let s = sine(rest);
-    let c = cosine_from_sine(s.abs());
+    let c = cosine_from_sine(s.wrapping_abs());
     match quarters & 3 {
         0 => (s, c),
         1 => (c, s.wrapping_neg()),
@@ -125,23 +135,24 @@ impl Metric {
         }
     }
 
-    /// Prepares the arc from `start` to `end` about `centre` (X, Z in nm) that turns by at most half a turn.
-    pub fn arc(&self, start: Lattice, end: Lattice, centre: (i64, i64), sense: Sense) -> Prepared {
+    /// Prepares the arc from `start` to `end` about `centre` (X, Z in nm). `reach` says whether it is the way round
+    /// of at most half a turn or the other one; the same end as start is a whole turn then.
+    pub fn arc(&self, start: Lattice, end: Lattice, centre: (i64, i64), sense: Sense, reach: Reach) -> Prepared {
         let delta = (end.x.wrapping_sub(start.x), end.z.wrapping_sub(start.z));
-        if delta == (0, 0) {
+        if delta == (0, 0) && matches!(reach, Reach::Short) {
             return Prepared::Nothing;
         }
         let off_x = Self::place(self.x, start.x).wrapping_sub(i128::from(centre.0) << 12);
         let off_z = Self::place(self.z, start.z).wrapping_sub(i128::from(centre.1) << 12);
         let square = off_x.saturating_mul(off_x).saturating_add(off_z.saturating_mul(off_z));
         let radius = i128::from(root_wide(square.unsigned_abs()));
-        if delta.0.abs() <= 1 && delta.1.abs() <= 1 {
+        if matches!(reach, Reach::Short) && delta.0.unsigned_abs() <= 1 && delta.1.unsigned_abs() <= 1 {
             let coarser = if self.across > self.along { self.x } else { self.z };
             if radius > Self::place(coarser, 3) {
                 return Prepared::Chord;
             }
         }
-        match Preparation::new(self, start, delta, centre, radius, sense).and_then(|p| p.arc()) {
+        match Preparation::new(self, start, delta, centre, radius, (sense, reach)).and_then(|p| p.arc()) {
             Some((arc, turn)) => Prepared::Arc(arc, turn),
             None => Prepared::Chord,
         }
@@ -152,6 +163,7 @@ impl Metric {
 struct Preparation<'m> {
     metric: &'m Metric,
     sense: Sense,
+    reach: Reach,
     end: (i32, i32),
     a: i128,
     b: i128,
@@ -168,7 +180,7 @@ impl<'m> Preparation<'m> {
         end: (i32, i32),
         centre: (i64, i64),
         radius: i128,
-        sense: Sense,
+        (sense, reach): (Sense, Reach),
     ) -> Option<Self> {
         let (a, b) = metric.weights(radius);
         // 2 a (centre / pulse - start)
@@ -186,16 +198,16 @@ impl<'m> Preparation<'m> {
         let miss = chord.wrapping_sub(c.wrapping_mul(dx)).wrapping_sub(d.wrapping_mul(dz));
         let bits = 128_u32.wrapping_sub(miss.unsigned_abs().leading_zeros());
         let shift = bits.saturating_sub(60);
-        c = c.wrapping_add(scale(reach_x, miss >> shift, (chord >> shift).max(1)));
-        d = d.wrapping_add(scale(reach_z, miss >> shift, (chord >> shift).max(1)));
+        c = c.wrapping_add(scale(reach_x, miss.wrapping_shr(shift), chord.wrapping_shr(shift).max(1)));
+        d = d.wrapping_add(scale(reach_z, miss.wrapping_shr(shift), chord.wrapping_shr(shift).max(1)));
         // where |dF/dx| = |dF/dz| = g on the curve: g^2 = (b c^2 + a d^2) / (a + b)
         let longest = c.unsigned_abs().max(d.unsigned_abs());
         let spare = 128_u32.wrapping_sub(longest.leading_zeros()).saturating_sub(40);
-        let (cs, ds) = (c >> spare, d >> spare);
+        let (cs, ds) = (c.wrapping_shr(spare), d.wrapping_shr(spare));
         let sum = b.saturating_mul(cs.wrapping_mul(cs)).saturating_add(a.saturating_mul(ds.wrapping_mul(ds)));
         let square = sum.checked_div(a.wrapping_add(b))?;
-        let tangent = i128::from(root_wide(square.unsigned_abs())) << spare;
-        (tangent > 0).then_some(Self { metric, sense, end, a, b, c, d, tangent })
+        let tangent = i128::from(root_wide(square.unsigned_abs())).wrapping_shl(spare);
+        (tangent > 0).then_some(Self { metric, sense, reach, end, a, b, c, d, tangent })
     }
 
     /// Gradient of `F` at a lattice point: X, Z.
@@ -263,9 +275,15 @@ impl<'m> Preparation<'m> {
         let first = Self::octant(self.gradient(0, 0), self.sense);
         // the end belongs to the octant that it leaves: the one that the opposite sense would enter
         let last = Self::octant(self.gradient(self.end.0, self.end.1), self.sense.mirrored());
-        let turns = match self.sense {
+        let between = match self.sense {
             Sense::CounterClockwise => last.wrapping_sub(first) & 7,
             Sense::Clockwise => first.wrapping_sub(last) & 7,
+        };
+        // half a turn passes four octant borders; rounded ends may add or take one
+        let turns = match self.reach {
+            Reach::Short if between > 5 => return None,
+            Reach::Long if between < 3 => between.wrapping_add(8),
+            Reach::Short | Reach::Long => between,
         };
         if usize::from(turns) >= MAX_PIECES {
             return None;
@@ -368,7 +386,10 @@ impl<'m> Preparation<'m> {
             Sense::Clockwise => -1,
         };
         let swept = i128::from(stop).wrapping_sub(i128::from(start)).wrapping_mul(travel);
-        let sweep = swept.checked_rem_euclid(whole)?;
+        let swept = swept.checked_rem_euclid(whole)?;
+        // a whole turn and a little less or more: the angles alone can't tell
+        let lacks = matches!(self.reach, Reach::Long) && swept < whole >> 2;
+        let sweep = if lacks { swept.wrapping_add(whole) } else { swept };
         let span = |pulse: PulseSize, centre: i128, weight: i128| {
             let den = weight.wrapping_mul(2).wrapping_mul(i128::from(pulse.denominator()));
             scale(centre, i128::from(pulse.numerator()) << 12, den)

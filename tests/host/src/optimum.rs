@@ -33,7 +33,9 @@ pub fn seconds(items: &[Item], parameters: &Parameters) -> f64 {
     let pulse = [size(config.x.pulse), size(config.z.pulse)];
     let snap = |p: Point| {
         let at = [f64::from(p.x.nm()) * 1e-6, f64::from(p.z.nm()) * 1e-6];
-        [(at[0] / pulse[0] + 0.5).floor() * pulse[0], (at[1] / pulse[1] + 0.5).floor() * pulse[1]]
+        // a half is a half although f64 may miss it
+        let near = |at: f64, pulse: f64| (at / pulse + 0.5 + 1e-9).floor() * pulse;
+        [near(at[0], pulse[0]), near(at[1], pulse[1])]
     };
     let mut at = snap(parameters.start());
     let mut blocks: Vec<Block> = Vec::new();

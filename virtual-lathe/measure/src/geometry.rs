@@ -138,6 +138,19 @@ impl Arc {
         })
     }
 
+    /// The whole circle about `centre` from `start` on; `None` if that is the centre.
+    pub(crate) fn whole(start: Vector, centre: Vector, clockwise: bool) -> Option<Self> {
+        let radius = (start - centre).length();
+        if radius <= 0.0 {
+            return None;
+        }
+        // the middle of the sweep is across the circle
+        let middle = (start - centre).unit() * -1.0;
+        let along = if clockwise { middle.left() * -1.0 } else { middle.left() };
+        let half = std::f64::consts::PI;
+        Some(Self { start, end: start, centre, radius, middle, along, clockwise, half, cos_half: -1.0 })
+    }
+
     pub(crate) fn length(&self) -> f64 {
         2.0 * self.half * self.radius
     }

@@ -4,7 +4,9 @@
 //!   the perpendicular bisector of the rounded ends.
 //! * **Programmed curve**: the same with the ends as programmed; for equal radii it is the circle about
 //!   the programmed centre.
-//! * **Piece**: what is walked in one go. An arc that turns by more than 180 degrees has two, which meet
+//! * **Piece**: what is walked in one go. An arc that turns by more than 180 degrees is one piece if moving its
+//!   centre onto the bisector moves it by at most a 16th of the coarser pulse (full circles always are: they
+//!   have no chord). Else it has two pieces, which meet
 //!   at the lattice point nearest to the programmed point at half the sweep (its radius is the mean of
 //!   start and end radius; like any programmed point it is a whole number of nanometres). A piece whose rounded ends coincide makes no pulses and is left out.
 //!
@@ -73,6 +75,14 @@ impl Scale {
     fn to_nanometre(place: Vector) -> PerAxis<i64> {
         let round = |nm: f64| (nm + 0.5 + 1e-4).floor() as i64;
         PerAxis { x: round(place.x), z: round(place.z) }
+    }
+
+    /// Whether a long arc between these rounded ends is walked whole: moving its centre along the chord onto their
+    /// bisector moves it by at most a 16th of the coarser pulse, (r1 - r0) R / chord.
+    fn keeps_centre(&self, start: PerAxis<i64>, end: PerAxis<i64>, centre: Vector) -> bool {
+        let (start, end) = (self.wide_place(start), self.wide_place(end));
+        let (first, last) = ((start - centre).length(), (end - centre).length());
+        (last - first).abs() * first <= (end - start).length() * self.coarser / 16.0
     }
 
     /// Place of a lattice point that may lie outside the range of positions.
@@ -183,6 +193,15 @@ impl Path {
             Shape::Arc { centre_nm, clockwise } => Arc::new(start, end, exact(centre_nm), clockwise)
                 .map_or_else(|| Curve::Line(Segment::new(start, end)), Curve::Arc),
         };
+        let round = |start: PerAxis<i64>, end: PerAxis<i64>, centre_nm: PerAxis<i64>, clockwise: bool| {
+            let (start_at, end_at) = (scale.wide_place(start), scale.wide_place(end));
+            let arc = if start == end {
+                Arc::whole(start_at, exact(centre_nm), clockwise)
+            } else {
+                Arc::new(start_at, end_at, exact(centre_nm), clockwise)
+            };
+            arc.map(|arc| Piece { curve: Curve::Arc(arc), end, before: 0.0 })
+        };
         let piece = |start: PerAxis<i64>, end: PerAxis<i64>| {
             (start != end).then(|| Piece {
                 curve: curve(scale.wide_place(start), scale.wide_place(end)),
@@ -197,8 +216,13 @@ impl Path {
         let (pieces, programmed) = match motion.shape {
             Shape::Arc { centre_nm, clockwise } if past_half => {
                 let half_nm = half_way(start_nm, end_nm, exact(centre_nm), clockwise);
-                let half = scale.nearest(Scale::to_nanometre(half_nm));
-                ([piece(from.at, half), piece(half, to.at)], (curve(start_nm, half_nm), Some(curve(half_nm, end_nm))))
+                let programmed = (curve(start_nm, half_nm), Some(curve(half_nm, end_nm)));
+                if scale.keeps_centre(from.at, to.at, exact(centre_nm)) {
+                    ([round(from.at, to.at, centre_nm, clockwise), None], programmed)
+                } else {
+                    let half = scale.nearest(Scale::to_nanometre(half_nm));
+                    ([piece(from.at, half), piece(half, to.at)], programmed)
+                }
             }
             Shape::Line | Shape::Arc { .. } => ([piece(from.at, to.at), None], (curve(start_nm, end_nm), None)),
         };

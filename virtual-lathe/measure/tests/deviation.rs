@@ -200,7 +200,8 @@ fn wrong_sense_of_rotation_shows() {
     let points = circle_points(50);
     let steps = round_steps(&points, 50.0, 500.0);
     let report = play(starting(0, 50), &[arc((0, 0), (0, 50_000), true, 120.0)], &steps);
-    assert!(report.walked.pulses > 40.0);
+    // the same points, but each of them the wrong way
+    assert!(report.backward_steps > 100, "{}", report.backward_steps);
 }
 
 /// 300 degrees about a centre off the lattice: the halves meet at the nearest point to the middle.
