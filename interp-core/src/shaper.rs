@@ -91,6 +91,14 @@ impl Shaper {
         }
     }
 
+    /// Shapes with other figures from now on. The pins stay as they are; what they owe from before, they owe as before.
+    pub const fn configure(&mut self, machine: &Machine) {
+        let new = Self::new(machine);
+        self.x = Pins { fall: self.x.fall, ready: self.x.ready, free: self.x.free, settled: self.x.settled, ..new.x };
+        self.z = Pins { fall: self.z.fall, ready: self.z.ready, free: self.z.free, settled: self.z.settled, ..new.z };
+        self.event_min = new.event_min;
+    }
+
     /// How far the train runs past the present tick, clocks.
     pub const fn ahead(&self) -> i64 {
         self.began.saturating_sub(TICK_CLOCKS as i64)

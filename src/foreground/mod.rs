@@ -32,6 +32,8 @@ pub enum Command {
     FeedOverride(u16),
     /// Optional stops stop.
     OptionalStop(bool),
+    /// Other figures of the machine. Without effect while a cycle runs: the background asks only when all is idle.
+    Configure(Machine),
 }
 
 /// The foreground of one lathe.
@@ -72,6 +74,7 @@ impl<'q> Foreground<'q> {
             }
             Command::FeedOverride(percent) => self.channel.set_feed_override(percent),
             Command::OptionalStop(on) => self.channel.set_optional_stop(on),
+            Command::Configure(machine) => drop(self.channel.configure(&machine)),
         }
     }
 
@@ -83,6 +86,11 @@ impl<'q> Foreground<'q> {
     /// Where the last pulse planned leads.
     pub const fn position(&self) -> Lattice {
         self.channel.position()
+    }
+
+    /// Percent of the programmed feed.
+    pub const fn feed_override(&self) -> u16 {
+        self.channel.feed_override()
     }
 
     /// How often the look-ahead wanted a block and the queue was empty.

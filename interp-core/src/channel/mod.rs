@@ -20,7 +20,7 @@ use runner::{Runner, Stretch};
 const FILL_PER_TICK: usize = 16;
 
 /// Ticks without a new block after which a cycle begins although neither the look-ahead is full nor the program's end
-/// known: the sender waits.
+/// known: the sender waits. Where there is no block at all the channel is idle again.
 const FILL_PATIENCE: u32 = 50;
 
 /// What the channel is doing.
@@ -28,7 +28,8 @@ const FILL_PATIENCE: u32 = 50;
 pub enum State {
     /// Nothing; waits for cycle start.
     Idle,
-    /// Cycle start was given; the look-ahead fills. Also where a program that arrives bit by bit has run dry.
+    /// Cycle start was given; the look-ahead fills. Also where a program that arrives bit by bit has run dry, for as
+    /// long as more may be on its way; then the channel is idle.
     Filling,
     /// Executes blocks.
     Running,
@@ -123,6 +124,7 @@ impl<const N: usize> Channel<N> {
         match self.state {
             State::Idle | State::Ended => {
                 self.complete = false;
+                self.waited = 0;
                 self.state = State::Filling;
                 true
             }
@@ -142,9 +144,9 @@ impl<const N: usize> Channel<N> {
         };
     }
 
-    /// Feed hold: brakes along the path to standstill. False where nothing runs.
+    /// Feed hold: brakes along the path to standstill, or does not begin to move. False where nothing runs.
     pub fn hold(&mut self) -> bool {
-        let runs = matches!(self.state, State::Running);
+        let runs = matches!(self.state, State::Running | State::Filling);
         if runs {
             self.state = State::Holding;
         }
@@ -154,6 +156,21 @@ impl<const N: usize> Channel<N> {
     /// Sets the feed override, percent; more than 200 counts as 200.
     pub fn set_feed_override(&mut self, percent: u16) {
         self.feed_override = percent.min(200);
+    }
+
+    /// Percent of the programmed feed.
+    pub const fn feed_override(&self) -> u16 {
+        self.feed_override
+    }
+
+    /// Works with other figures from now on. False, and nothing changes, while a cycle runs.
+    pub fn configure(&mut self, machine: &Machine) -> bool {
+        let idle = matches!(self.state, State::Idle | State::Ended);
+        if idle {
+            self.shaper.configure(machine);
+            self.rest = machine.x.jump.min(machine.z.jump);
+        }
+        idle
     }
 
     /// Whether optional stops stop.
@@ -186,9 +203,12 @@ impl<const N: usize> Channel<N> {
         }
         self.shaper.end_tick(out);
         if matches!(self.state, State::Filling) {
-            let dry = self.waited >= FILL_PATIENCE && !self.ahead.is_empty();
-            if self.complete || dry || !self.ahead.has_room() {
+            let patient = self.waited < FILL_PATIENCE;
+            if self.complete || !self.ahead.has_room() || (!patient && !self.ahead.is_empty()) {
                 self.state = State::Running;
+            } else if !patient {
+                self.line = 0;
+                self.state = State::Idle;
             }
         }
         if matches!(self.state, State::Resetting) && self.speed == 0 {
