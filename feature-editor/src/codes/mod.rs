@@ -46,6 +46,7 @@ pub use decimal::{Distance, Number, NumberError};
 pub use detect::Detector;
 pub use diagnostic::{Diagnostic, DiagnosticKind, Remedy, Severity};
 pub use item::{Action, Centre, Feed, Item, SpindleCommand, SpindleSpeed};
+pub use modal::Modal;
 pub use settings::{Format, Settings};
 pub use word::Word;
 
@@ -160,6 +161,17 @@ impl Interpreter {
             report.tell(span, DiagnosticKind::EndCodeMissing);
         }
         self.ended = true;
+    }
+
+    /// Goes on under other settings, with the tool at their `start`. What is modal stays in force.
+    pub const fn configure(&mut self, settings: Settings) {
+        self.state.position = settings.start;
+        self.settings = settings;
+    }
+
+    /// What is in force.
+    pub const fn modal(&self) -> Modal {
+        self.state.shown()
     }
 
     /// Whether the program is over: M2, M30 or the closing `%` was read.

@@ -1,6 +1,6 @@
 //! What stays in force from line to line.
 
-use interp_core::units::{Point, Sense};
+use interp_core::units::{Feedrate, Point, Sense};
 
 use super::item::Feed;
 
@@ -13,6 +13,21 @@ pub(crate) enum Motion {
     Line,
     /// G2, G3.
     Arc(Sense),
+}
+
+/// What is in force, to be shown to an operator.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Modal {
+    /// 0 to 3 for G0 to G3; `None` before the first.
+    pub motion: Option<u8>,
+    /// G7.
+    pub diameter: bool,
+    /// G20.
+    pub inch: bool,
+    /// G91.
+    pub incremental: bool,
+    /// The last F.
+    pub feed: Option<Feedrate>,
 }
 
 /// Modal state.
@@ -36,6 +51,26 @@ impl State {
     /// State at the start of a program.
     pub(crate) const fn new(position: Point) -> Self {
         Self { position, motion: None, diameter: false, inch: false, incremental: false, feed: None }
+    }
+
+    /// For display.
+    pub(crate) const fn shown(&self) -> Modal {
+        Modal {
+            motion: match self.motion {
+                None => None,
+                Some(Motion::Rapid) => Some(0),
+                Some(Motion::Line) => Some(1),
+                Some(Motion::Arc(Sense::Clockwise)) => Some(2),
+                Some(Motion::Arc(Sense::CounterClockwise)) => Some(3),
+            },
+            diameter: self.diameter,
+            inch: self.inch,
+            incremental: self.incremental,
+            feed: match self.feed {
+                Some(Feed::PerMinute(feed)) => Some(feed),
+                Some(Feed::Rapid) | None => None,
+            },
+        }
     }
 
     /// Nanometres of a written 1: of a length along the path, of Z, of a radius.
