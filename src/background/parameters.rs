@@ -241,6 +241,28 @@ impl Parameters {
         Ok(())
     }
 
+    /// Sets how far one pulse moves an axis, in nanometres, as a ratio.
+    ///
+    /// # Errors
+    /// [`ParameterError::Range`]; the parameter keeps its value.
+    pub fn set_pulse(&mut self, axis: Axis, numerator: u64, denominator: u64) -> Result<(), ParameterError> {
+        let at = match axis {
+            Axis::X => index::PULSE[0],
+            Axis::Z => index::PULSE[1],
+        };
+        if let Some((definition, value)) = DEFINITIONS.iter().zip(self.values.iter_mut()).nth(at) {
+            *value = pulse(numerator, denominator).ok_or(ParameterError::Range(definition))?;
+        }
+        Ok(())
+    }
+
+    /// All parameters with their values, which are written as an operator would type them.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static Definition, Shown)> + '_ {
+        let shown =
+            |(definition, value): (&'static Definition, &Value)| (definition, Shown { definition, value: *value });
+        DEFINITIONS.iter().zip(&self.values).map(shown)
+    }
+
     /// The machine that the parameters describe.
     ///
     /// # Errors
@@ -328,6 +350,37 @@ impl Parameters {
     }
 }
 
+/// The value of a parameter, as an operator would type it.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Shown {
+    definition: &'static Definition,
+    value: Value,
+}
+
+impl fmt::Display for Shown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.value {
+            Value::Pulse(pulse) if pulse.denominator() == 1 => write!(f, "{}", pulse.numerator()),
+            Value::Pulse(pulse) => write!(f, "{}/{}", pulse.numerator(), pulse.denominator()),
+            Value::Number(number) => {
+                let scale = match self.definition.kind {
+                    Kind::Number { scale, .. } => scale,
+                    Kind::Pulse | Kind::Switch | Kind::Choice(_) | Kind::Place => 1,
+                };
+                decimal(f, number, scale)
+            }
+            Value::Switch(on) => write!(f, "{on}"),
+            // lists have one word yet, the default
+            Value::Choice => f.write_str(self.definition.default),
+            Value::Place(point) => {
+                decimal(f, point.x.nm().into(), 1_000_000)?;
+                f.write_str(",")?;
+                decimal(f, point.z.nm().into(), 1_000_000)
+            }
+        }
+    }
+}
+
 /// Reads a value as `definition` writes it.
 fn read(definition: &'static Definition, text: &str) -> Result<Value, ParameterError> {
     let malformed = ParameterError::Malformed(definition);
@@ -343,13 +396,7 @@ fn read(definition: &'static Definition, text: &str) -> Result<Value, ParameterE
                     (u64::try_from(held).map_err(|_| range)?, 1_000_000_000)
                 }
             };
-            let (mut a, mut b) = (numerator, denominator);
-            while let Some(rest) = a.checked_rem(b) {
-                (a, b) = (b, rest);
-            }
-            let reduced = |value: u64| value.checked_div(a).and_then(|v| u32::try_from(v).ok());
-            let pulse = reduced(numerator).zip(reduced(denominator)).and_then(|(n, d)| PulseSize::new(n, d));
-            pulse.map(Value::Pulse).ok_or(range)
+            pulse(numerator, denominator).ok_or(range)
         }
         Kind::Number { scale, least, most } => {
             let held = parse(text).ok_or(malformed)?.scaled(scale).ok_or(range)?;
@@ -376,6 +423,17 @@ fn read(definition: &'static Definition, text: &str) -> Result<Value, ParameterE
             Ok(Value::Place(Point { x: length(x)?, z: length(z)? }))
         }
     }
+}
+
+/// A pulse size of a ratio that may be reduced.
+fn pulse(numerator: u64, denominator: u64) -> Option<Value> {
+    let (mut a, mut b) = (numerator, denominator);
+    while let Some(rest) = a.checked_rem(b) {
+        (a, b) = (b, rest);
+    }
+    let reduced = |value: u64| value.checked_div(a).and_then(|v| u32::try_from(v).ok());
+    let pulse = reduced(numerator).zip(reduced(denominator)).and_then(|(n, d)| PulseSize::new(n, d));
+    pulse.map(Value::Pulse)
 }
 
 fn parse(text: &str) -> Option<Number> {
@@ -415,6 +473,19 @@ mod tests {
         assert_eq!((machine.x.width, machine.x.hold, machine.event_min), (60, 120, 24));
         assert_eq!(machine.x.accel, 500 << 12);
         assert_eq!(machine.z.jump, 2000 << 12);
+    }
+
+    #[test]
+    fn every_value_is_shown_as_it_may_be_typed() {
+        let mut parameters = Parameters::new();
+        for (definition, shown) in parameters.iter() {
+            assert_eq!(shown.to_string(), definition.default);
+        }
+        for (name, text) in [("x.pulse_nm", "15875/8"), ("z.max_feed", "0.01"), ("start", "-0.5,12.345678")] {
+            parameters.set(name, text).unwrap();
+            let shown = parameters.iter().find(|(definition, _)| definition.name == name).unwrap().1;
+            assert_eq!(shown.to_string(), text);
+        }
     }
 
     #[test]
