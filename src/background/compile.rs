@@ -6,10 +6,12 @@
 
 use core::fmt;
 
-use feature_editor::codes::{Action, Diagnostic, Feed, Format, Interpreter, Item, Settings, Severity, SpindleCommand};
+use feature_editor::codes::{
+    Action, Diagnostic, Feed, Format, Interpreter, Item, Modal, Settings, Severity, SpindleCommand,
+};
 use interp_core::block::{Block, Builder, Limited, Output, Pace, Path, Work};
 use interp_core::config::Machine;
-use interp_core::units::{Axis, Lattice};
+use interp_core::units::{Axis, Lattice, Point};
 
 /// Something to say about a program.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -96,6 +98,7 @@ impl fmt::Display for Finding {
 pub struct Compiler {
     interpreter: Interpreter,
     builder: Builder,
+    at: Point,
     ended: bool,
 }
 
@@ -103,7 +106,26 @@ impl Compiler {
     /// A compiler at the start of a program.
     pub fn new(settings: Settings, format: Format, machine: &Machine) -> Self {
         let builder = Builder::new(machine, settings.start);
-        Self { interpreter: Interpreter::new(settings, format), builder, ended: false }
+        let at = settings.start;
+        Self { interpreter: Interpreter::new(settings, format), builder, at, ended: false }
+    }
+
+    /// Goes on under other settings and on another machine, with the tool at rest at the settings' `start`. What is
+    /// modal stays in force.
+    pub fn configure(&mut self, settings: Settings, machine: &Machine) {
+        self.builder = Builder::new(machine, settings.start);
+        self.at = settings.start;
+        self.interpreter.configure(settings);
+    }
+
+    /// Where everything compiled so far leads, as it was programmed.
+    pub const fn programmed(&self) -> Point {
+        self.at
+    }
+
+    /// What is in force.
+    pub const fn modal(&self) -> Modal {
+        self.interpreter.modal()
     }
 
     /// The lattice point that everything compiled so far leads to.
@@ -119,12 +141,17 @@ impl Compiler {
     /// Compiles one line, without its terminator. `emit` gets each action and the blocks that it makes, `report` all
     /// that there is to say.
     pub fn line(&mut self, text: &[u8], emit: &mut impl FnMut(&Item, &[Block]), report: &mut impl FnMut(Finding)) {
-        let (builder, ended) = (&mut self.builder, &mut self.ended);
+        let (builder, at, ended) = (&mut self.builder, &mut self.at, &mut self.ended);
         let mut late = None;
         self.interpreter.line(
             text,
             &mut |item| {
                 let found = compile(builder, &item, emit);
+                if let (Action::Line { end, .. } | Action::Arc { end, .. }, None | Some(Finding::Limited { .. })) =
+                    (item.action, found)
+                {
+                    *at = end;
+                }
                 *ended |= matches!(item.action, Action::End);
                 late = late.or(found);
             },
