@@ -1,0 +1,57 @@
+//! Commands on their way to the foreground, and whether they have arrived.
+
+use heapless::spsc::Producer;
+use interp_core::config::Machine;
+
+use crate::foreground::Command;
+
+/// Whether the foreground has obeyed what was asked of it.
+///
+/// A snapshot may be older than the queue looks, by less than a tick; one that is taken after the queue was seen empty
+/// is not.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(super) enum Settling {
+    /// Commands are under way.
+    Sent,
+    /// The queue was seen empty.
+    Taken,
+    /// Snapshots show what the commands led to.
+    Settled,
+}
+
+/// Commands that found the queue full, or were not sent yet. The later of two wishes counts.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Outbox {
+    pub(super) reset: bool,
+    pub(super) machine: Option<Machine>,
+    pub(super) percent: Option<u16>,
+    /// Hold or start.
+    pub(super) flow: Option<Command>,
+}
+
+impl Outbox {
+    /// Sends what there is, and as much as fits: a reset first, a start last. True if anything was sent or is left.
+    pub(super) fn send(&mut self, commands: &mut Producer<'_, Command>) -> bool {
+        let mut any = false;
+        while let Some(command) = self.first() {
+            any = true;
+            if commands.enqueue(command).is_err() {
+                break;
+            }
+            match command {
+                Command::Reset => self.reset = false,
+                Command::Configure(_) => self.machine = None,
+                Command::FeedOverride(_) => self.percent = None,
+                Command::Start | Command::Hold | Command::OptionalStop(_) => self.flow = None,
+            }
+        }
+        any
+    }
+
+    /// What is to be sent first.
+    fn first(&self) -> Option<Command> {
+        let reset = self.reset.then_some(Command::Reset);
+        let machine = self.machine.map(Command::Configure);
+        reset.or(machine).or(self.percent.map(Command::FeedOverride)).or(self.flow)
+    }
+}

@@ -1,0 +1,159 @@
+//! Why a line was refused, and the number that senders know it by.
+//!
+//! The numbers are those of Grbl 1.1 (1 to 38) and of grblHAL (39 to 79) where one fits; the rest are ours, from 200.
+//!
+//! | number | why |
+//! | --- | --- |
+//! | 200 | the receive buffer was full: the sender did not wait |
+//! | 201 | bytes were lost or garbled on the way |
+//! | 202 | comment without its end |
+//! | 203 | an O word that is not the first of its line |
+//! | 204 | the tool is past 2.1 m from zero, where no program can start |
+//! | 205 | what only a whole program can be refused for |
+
+use core::fmt;
+
+use feature_editor::codes::{DiagnosticKind, MAX_LINE};
+use interp_core::config::ConfigError;
+
+use crate::background::compile::Finding;
+use crate::background::parameters::ParameterError;
+
+/// Why a line was refused. A refusal changes nothing.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(super) enum Refusal {
+    /// The program text.
+    Program(Finding),
+    /// More than [`MAX_LINE`] bytes.
+    TooLong,
+    /// Bytes were lost because the buffer was full; how many, ever.
+    Overflow(u32),
+    /// Bytes were lost or garbled.
+    Damaged,
+    /// It needs an idle machine.
+    NotIdle,
+    /// No such `$` command.
+    Command,
+    /// `$H`.
+    Homing,
+    /// A parameter.
+    Parameter(ParameterError),
+    /// A number that is none.
+    Number,
+    /// Parameters that contradict each other.
+    Machine(ConfigError),
+    /// A parameter that only counts at power-on.
+    PowerOn,
+    /// The tool is past 2.1 m.
+    Position,
+}
+
+impl Refusal {
+    /// The number behind `error:`.
+    pub(super) const fn number(&self) -> u8 {
+        match self {
+            Self::Program(Finding::Text(diagnostic)) => of_text(&diagnostic.kind),
+            Self::Program(Finding::ArcTooWide { .. } | Finding::Limited { .. }) => 33,
+            Self::TooLong => 11,
+            Self::Overflow(_) => 200,
+            Self::Damaged => 201,
+            Self::NotIdle => 8,
+            Self::Command | Self::Parameter(ParameterError::Unknown) => 3,
+            Self::Homing => 5,
+            Self::Number | Self::Parameter(ParameterError::Malformed(_)) => 2,
+            Self::Parameter(ParameterError::Range(_)) | Self::Machine(_) => 52,
+            Self::PowerOn => 53,
+            Self::Position => 204,
+        }
+    }
+}
+
+/// The number of a finding in the text.
+const fn of_text(kind: &DiagnosticKind) -> u8 {
+    use DiagnosticKind as K;
+    match kind {
+        // letter expected
+        K::Byte(_) | K::Character(_) | K::NumberAlone => 1,
+        // bad number
+        K::NumberMissing(_) | K::NumberMalformed(_) | K::NumberTooLong(_) => 2,
+        // negative
+        K::DwellNegative(_) | K::Signed(_) => 4,
+        K::LineTooLong { .. } => 11,
+        // zero or less
+        K::FeedNotPositive(_) => 19,
+        // unsupported
+        K::UnknownLetter { .. } | K::UnknownG { .. } | K::UnknownM(_) => 20,
+        // two of one modal group
+        K::SameGroup { .. } => 21,
+        // no feed
+        K::FeedMissing(_) | K::FeedCodeUnset(_) => 22,
+        // whole number needed
+        K::DecimalPoint(_) => 23,
+        K::Repeated { .. } => 25,
+        // no axis words
+        K::EndMissing(_) => 26,
+        // line number
+        K::BlockNumber(_) => 27,
+        // missing value
+        K::DwellMissing => 28,
+        // unused axis words
+        K::DwellWithAxis(_) | K::MotionMissing(_) => 31,
+        // bad target
+        K::Coordinate { .. }
+        | K::RadiiDiffer { .. }
+        | K::FullCircleByRadius(_)
+        | K::RadiusZero
+        | K::RadiusTooLarge
+        | K::NotOneQuadrant => 33,
+        // arc radius
+        K::RadiusTooSmall { .. } => 34,
+        // arc without offsets
+        K::CentreMissing | K::ArcWordMissing(_) => 35,
+        // unused words
+        K::ArcWordUnused(_) | K::DwellWordUnused(_) => 36,
+        K::ToolNumber(_) => 38,
+        // out of range
+        K::DwellTooLong(_) | K::DwellLong(_) | K::FeedCode(_) => 39,
+        // above the largest feed
+        K::FeedTooHigh { .. } => 43,
+        // spindle speed
+        K::SpindleSpeed(_) => 44,
+        // words that exclude each other
+        K::AbsoluteAndIncremental { .. } | K::CentreAndRadius { .. } => 48,
+        // program demarcation
+        K::TextAfterPercent => 57,
+        K::CommentOpen => 202,
+        K::ProgramNumberPlace(_) => 203,
+        K::Empty | K::EndCodeMissing => 205,
+    }
+}
+
+/// Place and cause of a finding.
+pub(super) struct Place(pub(super) Finding);
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {} column {}: {}", self.0.line(), self.0.span().0, self.0)
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Program(finding) => Place(*finding).fmt(f),
+            Self::TooLong => write!(f, "line of more than {MAX_LINE} bytes"),
+            Self::Overflow(bytes) => {
+                write!(f, "line lost: the receive buffer was full, {bytes} bytes lost since power-on")
+            }
+            Self::Damaged => f.write_str("line lost: bytes of it did not arrive whole"),
+            Self::NotIdle => f.write_str("only while the machine is idle"),
+            Self::Command => f.write_str("there is no such command; $ lists them"),
+            Self::Homing => f.write_str("there are no homing switches"),
+            Self::Parameter(error) => error.fmt(f),
+            Self::Number => f.write_str("a number above zero with a decimal point, such as 800.000"),
+            Self::Machine(error) => error.fmt(f),
+            Self::PowerOn => f.write_str("start says where the tool is at power-on, and it may have moved since"),
+            Self::Position => f.write_str("the tool would be past 2100 mm from zero, where no program can start"),
+        }
+    }
+}
