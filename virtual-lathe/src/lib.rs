@@ -3,7 +3,7 @@
 //!
 //! It runs programs through the firmware's own background and foreground ([`lathe`]), measures the pulse train with
 //! an independent checker (the crate `measure`) and draws what the pulses did ([`picture`]). [`turn`] puts that
-//! together as the command `turn`.
+//! together as the command `turn`. [`serve`] runs the same lathe for a sender at a TCP port.
 
 pub mod insets;
 pub mod lathe;
@@ -13,6 +13,7 @@ pub mod output;
 pub mod picture;
 pub mod program;
 pub mod report;
+pub mod serve;
 pub mod turn;
 pub mod watch;
 

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use feature_editor::codes::Format;
+use virtual_lathe::serve;
 use virtual_lathe::turn::{self, Job};
 
 /// HandCNC's virtual lathe: runs programs through the firmware's own code, measures and draws the pulses.
@@ -20,6 +21,8 @@ struct Cli {
 enum Command {
     /// Run a program (the embedded demo without FILE) and report on its pulse train.
     Turn(Turn),
+    /// Run the lathe for a sender of G-code (Grbl 1.1 protocol) at a TCP port of this computer, until Ctrl-C.
+    Serve(Serve),
     /// List all parameters with units, ranges and defaults.
     Parameters,
 }
@@ -46,6 +49,22 @@ struct Turn {
     /// Draw the path (SVG or PNG by the name's ending). Without any output option out/NAME.svg and .png are drawn.
     #[arg(long, value_name = "FILE.svg|png", value_parser = picture_file)]
     picture: Option<PathBuf>,
+}
+
+#[derive(Args)]
+struct Serve {
+    /// Port on this computer (127.0.0.1) only; 0 takes any that is free. The first line printed names it.
+    #[arg(long, value_name = "PORT")]
+    tcp: u16,
+    /// Run as fast as the sender lets, not in real time; the pulses are the same.
+    #[arg(long)]
+    fast: bool,
+    /// Machine parameters, in TOML.
+    #[arg(long, value_name = "FILE.toml")]
+    machine: Option<PathBuf>,
+    /// One parameter; beats the machine file. `parameters` lists them.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = name_and_value)]
+    set: Vec<(String, String)>,
 }
 
 #[derive(Copy, Clone, Default, ValueEnum)]
@@ -90,6 +109,12 @@ fn main() -> ExitCode {
             trace: options.trace,
             report: options.report,
             picture: options.picture,
+        })),
+        Command::Serve(options) => ExitCode::from(serve::serve(&serve::Job {
+            port: options.tcp,
+            fast: options.fast,
+            machine: options.machine,
+            set: options.set,
         })),
         Command::Parameters => {
             // a reader that has gone is no failure

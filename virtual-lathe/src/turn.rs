@@ -70,18 +70,34 @@ impl From<io::Error> for Failure {
 pub fn turn(job: &Job) -> u8 {
     match run(job) {
         Ok(()) => DONE,
-        Err(Failure::Refused) => REFUSED,
-        Err(Failure::Unusable(message)) => {
+        Err(failure) => told(failure),
+    }
+}
+
+/// Tells why a job ended early; the exit code.
+fn told(failure: Failure) -> u8 {
+    match failure {
+        Failure::Refused => REFUSED,
+        Failure::Unusable(message) => {
             eprintln!("error: {message}");
             UNUSABLE
         }
-        Err(Failure::Fault(message)) => {
+        Failure::Fault(message) => {
             eprintln!(
                 "fault: {message}\n   = the pulses were found wrong; nothing was written. This is a bug: please report the program"
             );
             REFUSED
         }
     }
+}
+
+/// Reads a machine file and parameters by name.
+///
+/// # Errors
+/// The exit code; all errors are told.
+pub fn settings(machine: Option<&Path>, set: &[(String, String)]) -> Result<(Parameters, Machine), u8> {
+    let job = Job { machine: machine.map(Into::into), set: set.to_vec(), ..Job::default() };
+    parameters(&job).map_err(told)
 }
 
 fn run(job: &Job) -> Result<(), Failure> {
