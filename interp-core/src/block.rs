@@ -132,6 +132,16 @@ pub struct Limited {
     pub speed: Speed,
 }
 
+/// Why an arc can't be walked.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum ArcRefusal {
+    /// It leaves the range of [`Length`] between its ends.
+    OutOfRange,
+    /// Its radius is below three pulses of the coarser axis, and the pulse sizes differ more than fourfold: there is
+    /// no lattice point near most of it.
+    TooSmall,
+}
+
 /// What became of a programmed curve.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Built {
@@ -139,8 +149,8 @@ pub struct Built {
     pub motions: Vec<Motion, 2>,
     /// Where an axis can't reach the programmed feed.
     pub limited: Option<Limited>,
-    /// The curve leaves the range of [`Length`]; nothing was built and the position is as before.
-    pub out_of_range: bool,
+    /// Why nothing was built; the position is as before then.
+    pub refused: Option<ArcRefusal>,
 }
 
 /// A direction: X and Z parts of a unit vector, 30 fraction bits.
@@ -182,6 +192,10 @@ impl Builder {
     /// Makes the blocks of one programmed curve.
     pub fn motion(&mut self, path: Path, end: Point, pace: Pace) -> Built {
         let mut built = Built::default();
+        if matches!(path, Path::Arc { centre, .. } if self.too_small(centre)) {
+            built.refused = Some(ArcRefusal::TooSmall);
+            return built;
+        }
         match path {
             Path::Line => self.line(end, pace, &mut built),
             Path::Arc { centre, sense } => match self.split(end, centre, sense) {
@@ -196,10 +210,19 @@ impl Builder {
                     }
                 }
                 Split::Whole(reach) => self.arc(end, centre, sense, reach, pace, &mut built),
-                Split::OutOfRange => built.out_of_range = true,
+                Split::OutOfRange => built.refused = Some(ArcRefusal::OutOfRange),
             },
         }
         built
+    }
+
+    /// Whether an arc from here about `centre` is [`ArcRefusal::TooSmall`].
+    fn too_small(&self, centre: (i64, i64)) -> bool {
+        let (x, z) = self.span(1, 1);
+        let (finer, coarser) = (x.min(z), x.max(z));
+        let off = |at: Length, centre: i64| i128::from(i64::from(at.nm()).wrapping_sub(centre)) << FRACTION_BITS;
+        let radius = length(off(self.at.x, centre.0), off(self.at.z, centre.1));
+        coarser > finer.saturating_mul(4) && radius < coarser.saturating_mul(3)
     }
 
     fn rounded(&self, end: Point) -> Lattice {

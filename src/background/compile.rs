@@ -1,15 +1,15 @@
 //! The compile job: lines of program text in, blocks out.
 //!
 //! The interpreter of `feature-editor` makes actions of a line, the block builder of `interp-core` makes blocks of
-//! the actions. Nothing of a refused line becomes a block. A stored program is compiled twice: once to check it
-//! whole, once to run it.
+//! the actions. A line with an error among its findings is refused: its blocks, if any, are not to be run. A stored
+//! program is compiled twice: once to check it whole, once to run it.
 
 use core::fmt;
 
 use feature_editor::codes::{
     Action, Diagnostic, Feed, Format, Interpreter, Item, Modal, Settings, Severity, SpindleCommand,
 };
-use interp_core::block::{Block, Builder, Limited, Output, Pace, Path, Work};
+use interp_core::block::{ArcRefusal, Block, Builder, Limited, Output, Pace, Path, Work};
 use interp_core::config::Machine;
 use interp_core::units::{Axis, Lattice, Point};
 
@@ -25,10 +25,12 @@ pub enum Finding {
         /// What is left.
         limited: Limited,
     },
-    /// An error: an arc leaves ±2.1 m between its ends.
-    ArcTooWide {
+    /// An error: an arc that can't be walked.
+    Arc {
         /// Line of the program.
         line: u32,
+        /// Why.
+        why: ArcRefusal,
     },
 }
 
@@ -38,7 +40,7 @@ impl Finding {
         match self {
             Self::Text(diagnostic) => diagnostic.severity() == Severity::Error,
             Self::Limited { .. } => false,
-            Self::ArcTooWide { .. } => true,
+            Self::Arc { .. } => true,
         }
     }
 
@@ -46,7 +48,7 @@ impl Finding {
     pub const fn line(&self) -> u32 {
         match self {
             Self::Text(diagnostic) => diagnostic.line,
-            Self::Limited { line, .. } | Self::ArcTooWide { line } => *line,
+            Self::Limited { line, .. } | Self::Arc { line, .. } => *line,
         }
     }
 
@@ -54,7 +56,7 @@ impl Finding {
     pub const fn span(&self) -> (u32, u32) {
         match self {
             Self::Text(diagnostic) => (diagnostic.column, diagnostic.length),
-            Self::Limited { .. } | Self::ArcTooWide { .. } => (1, 0),
+            Self::Limited { .. } | Self::Arc { .. } => (1, 0),
         }
     }
 
@@ -69,7 +71,10 @@ impl Finding {
                 let axis = limited.axis.letter();
                 write!(f, "program a lower F or raise {axis}.max_feed, if the machine allows it")
             }
-            Self::ArcTooWide { .. } => f.write_str("split the arc, or move it nearer to the zero point"),
+            Self::Arc { why: ArcRefusal::OutOfRange, .. } => {
+                f.write_str("split the arc, or move it nearer to the zero point")
+            }
+            Self::Arc { why: ArcRefusal::TooSmall, .. } => f.write_str("write a line in its place"),
         }
     }
 }
@@ -88,7 +93,12 @@ impl fmt::Display for Finding {
                 let (whole, part) = (um_per_min / 1_000, um_per_min % 1_000 / 100);
                 write!(f, "F is limited to {whole}.{part} mm/min by the {axis} axis in this direction")
             }
-            Self::ArcTooWide { .. } => f.write_str("the arc leaves the range of 2.1 m between its ends"),
+            Self::Arc { why: ArcRefusal::OutOfRange, .. } => {
+                f.write_str("the arc leaves the range of 2.1 m between its ends")
+            }
+            Self::Arc { why: ArcRefusal::TooSmall, .. } => f.write_str(
+                "the arc's radius is below three pulses of the coarser axis, too small for pulses so unequal",
+            ),
         }
     }
 }
@@ -207,8 +217,8 @@ fn compile(builder: &mut Builder, item: &Item, emit: &mut impl FnMut(&Item, &[Bl
         Feed::PerMinute(feed) => Pace::Feed(feed),
     };
     let built = builder.motion(path, end, pace);
-    if built.out_of_range {
-        return Some(Finding::ArcTooWide { line });
+    if let Some(why) = built.refused {
+        return Some(Finding::Arc { line, why });
     }
     let mut blocks = heapless::Vec::<Block, 2>::new();
     for motion in &built.motions {

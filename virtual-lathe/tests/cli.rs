@@ -967,20 +967,22 @@ fn a_reversal_with_a_small_jump_keeps_it() {
 }
 
 #[test]
-fn an_arc_smaller_than_a_coarse_pulse_is_walked_within_half_of_it() {
-    let pulses = ["x.pulse_nm=10000/3", "z.pulse_nm=100", "z.max_feed=540"];
-    exact("G2 X0.001 Z0.01 R0.004 F60\nM30\n", &pulses);
-}
-
-#[test]
-fn an_arc_of_a_few_coarse_pulses_ends_once() {
-    let pulses = ["x.pulse_nm=5000", "z.pulse_nm=100", "z.max_feed=540"];
-    exact("G2 X0.01 Z0 I0.01 K-0.0023 F60\nG3 X0 Z0 I0 K-0.01\nM30\n", &pulses);
-}
-
-#[test]
-fn an_arc_of_a_few_coarse_pulses_keeps_the_acceleration() {
-    exact("G2 X-0.002 Z0 R-0.003 F60\nM30\n", &["x.pulse_nm=5000", "z.pulse_nm=100", "z.max_feed=270"]);
+fn an_arc_of_a_few_coarse_pulses_is_refused_where_the_pulses_are_very_unequal() {
+    for (program, pulses) in [
+        ("G2 X0.001 Z0.01 R0.004 F60", ["x.pulse_nm=10000/3", "z.pulse_nm=100", "z.max_feed=540"]),
+        ("G2 X0.01 Z0 I0.01 K-0.0023 F60", ["x.pulse_nm=5000", "z.pulse_nm=100", "z.max_feed=540"]),
+        ("G2 X-0.002 Z0 R-0.003 F60", ["x.pulse_nm=5000", "z.pulse_nm=100", "z.max_feed=270"]),
+    ] {
+        let bench = Bench::with(format!("{program}\nM30\n"));
+        let mut arguments = vec!["p.nc", "--report", "r.json"];
+        for pulse in &pulses {
+            arguments.extend(["--set", pulse]);
+        }
+        let run = bench.turn(&arguments);
+        assert_eq!(run.code, 1, "{program}");
+        assert!(run.err.contains("below three pulses of the coarser axis"), "{}", run.err);
+        assert!(run.err.contains("write a line in its place"), "{}", run.err);
+    }
 }
 
 #[test]
@@ -1016,7 +1018,7 @@ fn three_quarters_of_a_circle_between_lattice_points_stay_within_half_a_pulse() 
 
 #[test]
 fn a_short_slow_arc_keeps_its_feed_within_half_a_percent() {
-    let report = Bench::with("F500\nG3 X-0.0083 Z0.009 R-0.041\nM30\n").report(&["--set", "z.max_accel=50"]);
+    let report = Bench::with("F60\nG3 X-0.0083 Z0.009 R-0.041\nM30\n").report(&["--set", "z.max_accel=50"]);
     let worst = report["feed_error_percent"]["max"].as_f64().unwrap();
     assert!(worst <= 0.5, "{worst} %");
 }

@@ -22,7 +22,7 @@
 //! - Answers are one for each terminator, but those that a reset makes pointless.
 //! - Nothing of a refused line moves or stays in force.
 //! - Blocks are queued only for a foreground that will execute them: none between a reset and the standstill.
-//! - "Idle" is believed only of a snapshot taken after all commands were obeyed ([`Settling`]).
+//! - "Idle" is believed only of a snapshot taken after all commands were obeyed (`Settling`).
 //!
 //! # Left out
 //! Jogging, homing, probing, offsets, check mode; alarms, which the foreground latches.

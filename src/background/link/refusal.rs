@@ -53,7 +53,7 @@ impl Refusal {
     pub(super) const fn number(&self) -> u8 {
         match self {
             Self::Program(Finding::Text(diagnostic)) => of_text(&diagnostic.kind),
-            Self::Program(Finding::ArcTooWide { .. } | Finding::Limited { .. }) => 33,
+            Self::Program(Finding::Arc { .. } | Finding::Limited { .. }) => 33,
             Self::TooLong => 11,
             Self::Overflow(_) => 200,
             Self::Damaged => 201,
