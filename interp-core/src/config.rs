@@ -178,7 +178,7 @@ impl core::fmt::Display for ConfigError {
                 let a = axis.letter();
                 write!(
                     f,
-                    "{a}.max_feed needs {needed_hz} pulses a second, but {a}.pulse_width_ns and {a}.min_space_ns allow {limit_hz}"
+                    "{a}.max_feed needs {needed_hz} pulses a second, but {a}.pulse_width_ns, {a}.min_space_ns and event_min_ns allow {limit_hz}"
                 )
             }
             Self::PulseRatio => {
