@@ -14,35 +14,47 @@ use crate::train::{Event, Levels};
 use crate::units::Axis;
 
 /// A time that never comes.
-const NEVER: i64 = i64::MAX;
+const NEVER: i32 = i32::MAX;
+
+/// The tick's end.
+#[expect(clippy::cast_possible_wrap, reason = "12 000")]
+const BORDER: i32 = TICK_CLOCKS as i32;
+
+/// Clocks as the shaper holds them; 0.7 s, far more than any width, is the most. Times of a tick are then below 2^25
+/// in magnitude but for [`NEVER`], which nothing is added to, and [`LONG_AGO`], so no sum leaves 32 bits.
+const fn clamped(clocks: u32) -> i32 {
+    const MOST: u32 = 1 << 23;
+    #[expect(clippy::cast_possible_wrap, reason = "at most 2^23")]
+    if clocks > MOST { MOST as i32 } else { clocks as i32 }
+}
 
 /// What one axis's pins still owe.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 struct Pins {
-    width: i64,
-    space: i64,
-    setup: i64,
-    hold: i64,
+    width: i32,
+    space: i32,
+    setup: i32,
+    hold: i32,
     /// When the step pin must go low; [`NEVER`] while it is low.
-    fall: i64,
+    fall: i32,
     /// Earliest next rise after the last fall.
-    ready: i64,
+    ready: i32,
     /// Earliest change of direction after the last rise.
-    free: i64,
+    free: i32,
     /// Earliest rise after the last change of direction.
-    settled: i64,
+    settled: i32,
 }
 
 /// Long before any tick.
-const LONG_AGO: i64 = -(1 << 40);
+const LONG_AGO: i32 = -(1 << 28);
 
 impl Pins {
     const fn new(width: u32, space: u32, setup: u32, hold: u32) -> Self {
         Self {
-            width: width as i64,
-            space: space as i64,
-            setup: setup as i64,
-            hold: hold as i64,
+            width: clamped(width),
+            space: clamped(space),
+            setup: clamped(setup),
+            hold: clamped(hold),
             fall: NEVER,
             ready: LONG_AGO,
             free: LONG_AGO,
@@ -61,8 +73,8 @@ impl Pins {
     }
 }
 
-const fn earlier(time: i64) -> i64 {
-    let moved = time.saturating_sub(TICK_CLOCKS as i64);
+const fn earlier(time: i32) -> i32 {
+    let moved = time.wrapping_sub(BORDER);
     if moved < LONG_AGO { LONG_AGO } else { moved }
 }
 
@@ -71,11 +83,11 @@ const fn earlier(time: i64) -> i64 {
 pub struct Shaper {
     x: Pins,
     z: Pins,
-    event_min: i64,
+    event_min: i32,
     /// Levels of the last event, not yet handed out.
     levels: Levels,
     /// When it began.
-    began: i64,
+    began: i32,
 }
 
 impl Shaper {
@@ -85,7 +97,7 @@ impl Shaper {
         Self {
             x: Pins::new(x.width, x.space, x.setup, x.hold),
             z: Pins::new(z.width, z.space, z.setup, z.hold),
-            event_min: machine.event_min as i64,
+            event_min: clamped(machine.event_min),
             levels: Levels::LOW,
             began: 0,
         }
@@ -100,15 +112,15 @@ impl Shaper {
     }
 
     /// How far the train runs past the present tick, clocks.
-    pub const fn ahead(&self) -> i64 {
-        self.began.saturating_sub(TICK_CLOCKS as i64)
+    pub const fn ahead(&self) -> i32 {
+        self.began.wrapping_sub(BORDER)
     }
 
     /// Adds a step at `due` clocks from the start of the tick, or as soon after it as the rules allow. Each of `x`
     /// and `z` is -1, 0 or 1.
     #[inline]
     pub fn step(&mut self, due: u32, x: i8, z: i8, out: &mut impl FnMut(Event)) {
-        let mut due = i64::from(due);
+        let mut due = clamped(due);
         if x != 0 {
             due = self.prepare(Axis::X, x > 0, due, out);
         }
@@ -121,26 +133,26 @@ impl Shaper {
         let mut levels = self.lowered(at);
         if x != 0 {
             levels = levels.with_step(Axis::X, true);
-            self.x.fall = at.saturating_add(self.x.width);
-            self.x.free = at.saturating_add(self.x.hold);
+            self.x.fall = at.wrapping_add(self.x.width);
+            self.x.free = at.wrapping_add(self.x.hold);
         }
         if z != 0 {
             levels = levels.with_step(Axis::Z, true);
-            self.z.fall = at.saturating_add(self.z.width);
-            self.z.free = at.saturating_add(self.z.hold);
+            self.z.fall = at.wrapping_add(self.z.width);
+            self.z.free = at.wrapping_add(self.z.hold);
         }
         self.put(at, levels, out);
     }
 
     /// Ends the tick: what is left of it is handed out, and times count from the next.
     pub fn end_tick(&mut self, out: &mut impl FnMut(Event)) {
-        let border = i64::from(TICK_CLOCKS);
-        self.fall_until(border.saturating_add(self.event_min).saturating_sub(1), out);
+        let border = BORDER;
+        self.fall_until(border.wrapping_add(self.event_min).wrapping_sub(1), out);
         if self.began < border {
-            out(Event::new(self.levels, clocks(border.saturating_sub(self.began))));
+            out(Event::new(self.levels, clocks(border.wrapping_sub(self.began))));
             self.began = border;
         }
-        self.began = self.began.saturating_sub(border);
+        self.began = self.began.wrapping_sub(border);
         self.x.next_tick();
         self.z.next_tick();
     }
@@ -159,7 +171,7 @@ impl Shaper {
 
     /// Earliest rise of `axis` at or after `due`, its pin low and the direction set.
     #[inline]
-    fn prepare(&mut self, axis: Axis, plus: bool, due: i64, out: &mut impl FnMut(Event)) -> i64 {
+    fn prepare(&mut self, axis: Axis, plus: bool, due: i32, out: &mut impl FnMut(Event)) -> i32 {
         // the pin must have fallen, and when it did tells when it may rise: a fall may have had to wait
         while self.pins(axis).fall != NEVER {
             self.fall_next(out);
@@ -181,25 +193,25 @@ impl Shaper {
     /// Changes the direction of an axis as early as its last pulse allows.
     #[cold]
     fn turn(&mut self, axis: Axis, plus: bool, out: &mut impl FnMut(Event)) {
-        let due = self.pins(axis).free.max(self.began.saturating_add(self.event_min));
+        let due = self.pins(axis).free.max(self.began.wrapping_add(self.event_min));
         self.fall_until(due, out);
         let at = self.placed(due);
         let levels = self.lowered(at).with_plus(axis, plus);
         self.put(at, levels, out);
         let pins = self.pins(axis);
-        pins.settled = at.saturating_add(pins.setup);
+        pins.settled = at.wrapping_add(pins.setup);
     }
 
     /// Lowers pins that are due long enough before `until` for another event then.
     #[inline]
-    fn fall_until(&mut self, until: i64, out: &mut impl FnMut(Event)) {
+    fn fall_until(&mut self, until: i32, out: &mut impl FnMut(Event)) {
         loop {
             let next = self.x.fall.min(self.z.fall);
             if next == NEVER {
                 return;
             }
             let at = self.placed(next);
-            if at.saturating_add(self.event_min) > until {
+            if at.wrapping_add(self.event_min) > until {
                 return;
             }
             let levels = self.lowered(at);
@@ -209,52 +221,52 @@ impl Shaper {
 
     /// The levels with every pin low whose fall is due at `at`.
     #[inline]
-    fn lowered(&mut self, at: i64) -> Levels {
+    fn lowered(&mut self, at: i32) -> Levels {
         let mut levels = self.levels;
         if self.x.fall <= at {
             levels = levels.with_step(Axis::X, false);
             self.x.fall = NEVER;
-            self.x.ready = at.saturating_add(self.x.space);
+            self.x.ready = at.wrapping_add(self.x.space);
         }
         if self.z.fall <= at {
             levels = levels.with_step(Axis::Z, false);
             self.z.fall = NEVER;
-            self.z.ready = at.saturating_add(self.z.space);
+            self.z.ready = at.wrapping_add(self.z.space);
         }
         levels
     }
 
     /// The first instant at or after `due` at which an event may begin.
     #[inline]
-    const fn placed(&self, due: i64) -> i64 {
-        let border = TICK_CLOCKS as i64;
-        let after = self.began.saturating_add(self.event_min);
+    const fn placed(&self, due: i32) -> i32 {
+        let border = BORDER;
+        let after = self.began.wrapping_add(self.event_min);
         let at = if due > after { due } else { after };
-        if at <= border.saturating_sub(self.event_min) || at >= border.saturating_add(self.event_min) {
+        if at <= border.wrapping_sub(self.event_min) || at >= border.wrapping_add(self.event_min) {
             at
         } else if at <= border && self.began < border {
             border
         } else {
-            border.saturating_add(self.event_min)
+            border.wrapping_add(self.event_min)
         }
     }
 
     /// Begins an event, handing out the one before it.
     #[inline]
-    fn put(&mut self, at: i64, levels: Levels, out: &mut impl FnMut(Event)) {
-        let border = i64::from(TICK_CLOCKS);
+    fn put(&mut self, at: i32, levels: Levels, out: &mut impl FnMut(Event)) {
+        let border = BORDER;
         if self.began < border && at > border {
-            out(Event::new(self.levels, clocks(border.saturating_sub(self.began))));
+            out(Event::new(self.levels, clocks(border.wrapping_sub(self.began))));
             self.began = border;
         }
-        out(Event::new(self.levels, clocks(at.saturating_sub(self.began))));
+        out(Event::new(self.levels, clocks(at.wrapping_sub(self.began))));
         self.levels = levels;
         self.began = at;
     }
 }
 
 /// An interval: between 1 and one tick by construction.
-const fn clocks(interval: i64) -> u32 {
+const fn clocks(interval: i32) -> u32 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0..=65535")]
     if interval < 0 {
         0
