@@ -1,5 +1,7 @@
-//! Background: parameters, the job that compiles program text into blocks, and the link that the text comes over.
+//! Background: parameters, the job that compiles program text into blocks, and the link with its inbox and status.
 
 pub mod compile;
+pub mod inbox;
 pub mod link;
 pub mod parameters;
+pub mod status;

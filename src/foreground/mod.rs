@@ -3,6 +3,10 @@
 //! It takes commands and blocks out of two single-producer queues and gives a tick of pulse train. It never waits:
 //! what is not there at a tick's start is taken at the next.
 
+pub mod published;
+pub mod rehearsal;
+pub mod train_queue;
+
 use heapless::spsc::Consumer;
 use interp_core::block::Block;
 use interp_core::channel::{Channel, Report, State};
@@ -63,7 +67,8 @@ impl<'q> Foreground<'q> {
         self.channel.tick(&mut || blocks.dequeue(), out)
     }
 
-    fn obey(&mut self, command: Command) {
+    /// Obeys a command at once; the next tick is the first that shows it.
+    pub fn obey(&mut self, command: Command) {
         match command {
             // a start with nothing to start and a hold of nothing are requests without effect, and harmless
             Command::Start => drop(self.channel.start()),
@@ -76,6 +81,11 @@ impl<'q> Foreground<'q> {
             Command::OptionalStop(on) => self.channel.set_optional_stop(on),
             Command::Configure(machine) => drop(self.channel.configure(&machine)),
         }
+    }
+
+    /// Whether the look-ahead has room for blocks that may still come: a sender that is late now delays the cycle.
+    pub fn is_hungry(&self) -> bool {
+        self.channel.is_hungry()
     }
 
     /// What the lathe is doing.
@@ -96,5 +106,42 @@ impl<'q> Foreground<'q> {
     /// How often the look-ahead wanted a block and the queue was empty.
     pub const fn starved(&self) -> u32 {
         self.channel.starved()
+    }
+}
+
+/// A state as a number, for a [snapshot](published::Published) and for logs.
+pub const fn state_word(state: State) -> u32 {
+    match state {
+        State::Idle => 0,
+        State::Filling => 1,
+        State::Running => 2,
+        State::Holding => 3,
+        State::Resetting => 4,
+        State::Stopped => 5,
+        State::Ended => 6,
+    }
+}
+
+/// The state of a number; idle for a number of none.
+pub const fn word_state(word: u32) -> State {
+    match word {
+        1 => State::Filling,
+        2 => State::Running,
+        3 => State::Holding,
+        4 => State::Resetting,
+        5 => State::Stopped,
+        6 => State::Ended,
+        _ => State::Idle,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_state_comes_back_from_its_number() {
+        let states = [0, 1, 2, 3, 4, 5, 6].map(word_state);
+        assert_eq!(states.map(state_word), [0, 1, 2, 3, 4, 5, 6]);
     }
 }

@@ -188,6 +188,11 @@ impl<const N: usize> Channel<N> {
         self.position
     }
 
+    /// Whether the look-ahead has room for blocks that may still come.
+    pub fn is_hungry(&self) -> bool {
+        !self.complete && self.ahead.has_room()
+    }
+
     /// How often a block was wanted and none was there.
     pub const fn starved(&self) -> u32 {
         self.starved

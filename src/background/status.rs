@@ -1,0 +1,58 @@
+//! Status: what the foreground publishes after each tick and the link reads.
+
+use super::link::Snapshot;
+use crate::foreground::published::Published;
+use crate::foreground::{Foreground, state_word, word_state};
+use interp_core::channel::Report;
+use interp_core::units::Lattice;
+
+/// Counters of what must not happen; any that is not zero is an alarm.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Faults {
+    /// The train was found empty.
+    pub underruns: u32,
+    /// Events found no place in the train.
+    pub overruns: u32,
+    /// An event was over before it began.
+    pub late: u32,
+}
+
+/// The foreground's figures as published words.
+#[derive(Debug, Default)]
+pub struct Status(Published<9>);
+
+impl Status {
+    /// Idle at (0, 0).
+    pub const fn new() -> Self {
+        Self(Published::new())
+    }
+
+    /// Publishes what a tick made. From the interpolator only.
+    pub fn publish(&self, report: &Report, foreground: &Foreground<'_>, faults: Faults) {
+        let position = foreground.position();
+        self.0.publish(&[
+            state_word(report.state),
+            position.x.cast_unsigned(),
+            position.z.cast_unsigned(),
+            report.speed,
+            report.line,
+            u32::from(foreground.feed_override()),
+            faults.underruns,
+            faults.overruns,
+            faults.late,
+        ]);
+    }
+
+    /// What was published last.
+    pub fn snapshot(&self) -> Snapshot {
+        let [state, x, z, speed, line, feed_override, underruns, _overruns, _late] = self.0.read();
+        Snapshot {
+            state: word_state(state),
+            position: Lattice { x: x.cast_signed(), z: z.cast_signed() },
+            speed,
+            line,
+            feed_override: u16::try_from(feed_override).unwrap_or(u16::MAX),
+            underruns,
+        }
+    }
+}
