@@ -1,0 +1,68 @@
+//! Boards: the only code that knows a register.
+//!
+//! Each board is a module with the same `setup() -> Board`, the pins in its own documentation and a function `safe`
+//! that the fault handlers call. What boards share stands beside them: the step timer and the step port of real
+//! chips, the serial port of the link, the emergency input, the bell, the faults. All boards use the same interrupts
+//! (a task of the app names one): TIM5 for steps, USART2 for the link, EXTI15_10 for the emergency stop, I2C3_ER for
+//! the interpolator and I2C3_EV for background tasks (the last two stand for no device).
+//!
+//! The only `unsafe` of the firmware is here.
+
+mod bell;
+mod fault;
+mod link_port;
+
+#[cfg(not(feature = "board-qemu"))]
+mod chip;
+#[cfg(feature = "board-f407")]
+mod f407;
+#[cfg(feature = "board-f411")]
+mod f411;
+#[cfg(feature = "board-f446")]
+mod f446;
+#[cfg(feature = "board-qemu")]
+mod qemu;
+
+#[cfg(feature = "board-f407")]
+use f407 as this;
+#[cfg(feature = "board-f411")]
+use f411 as this;
+#[cfg(feature = "board-f446")]
+use f446 as this;
+#[cfg(feature = "board-qemu")]
+use qemu as this;
+
+#[cfg(not(any(feature = "board-f407", feature = "board-f411", feature = "board-f446", feature = "board-qemu")))]
+compile_error!("name a board: --features board-f407, board-f411, board-f446 or board-qemu (cargo xtask firmware does)");
+#[cfg(any(
+    all(feature = "board-f407", any(feature = "board-f411", feature = "board-f446", feature = "board-qemu")),
+    all(feature = "board-f411", any(feature = "board-f446", feature = "board-qemu")),
+    all(feature = "board-f446", feature = "board-qemu"),
+))]
+compile_error!("name one board only");
+
+use handcnc::background::parameters::Parameters;
+
+pub(crate) use bell::Bell;
+pub(crate) use link_port::{Receiver, Sender};
+pub(crate) use this::{Bench, Drives, EmergencyInput, StepPort, StepTimer, safe, setup, sleep};
+
+/// What a board gives.
+pub(crate) struct Board {
+    /// Waits the intervals of the train.
+    pub(crate) timer: StepTimer,
+    /// Step and direction pins.
+    pub(crate) port: StepPort,
+    /// Enable pins of motor drivers and spindle.
+    pub(crate) drives: Drives,
+    /// Emergency stop.
+    pub(crate) emergency: EmergencyInput,
+    /// The link's bytes in.
+    pub(crate) receiver: Receiver,
+    /// The link's bytes out.
+    pub(crate) sender: Sender,
+    /// What a test bench asks for.
+    pub(crate) bench: Bench,
+    /// The machine's parameters.
+    pub(crate) parameters: Parameters,
+}

@@ -1,0 +1,232 @@
+//! QEMU 7.2's `netduinoplus2`: an STM32F405 with timers 2 to 5, the serial ports and the interrupt controller, and
+//! without ports, clock tree, TIM1 and DMA. For tests.
+//!
+//! QEMU's `-d unimp` logs each write to what it lacks, in order and with its value. So this board's port is GPIOE's
+//! ODR, and each interval goes to TIM1's ARR, too: the log has a pair of port and interval for every event that the
+//! core really played. TIM1's CCR1 gets a mark when the lathe's state changes, its CCR2 one when
+//! the train ran empty or lost events.
+//!
+//! TIM5 counts nanoseconds here: an interval is rounded down to one. Its model adds whatever a write of PSC, CNT or
+//! EGR leaves behind to every later alarm, so those are never written; writing ARR restarts the wait.
+//!
+//! The words of semihosting's command line (`-semihosting-config arg=..`) are `name=value` for a parameter and
+//! `TICK:hold`, `TICK:start`, `TICK:reset`, `TICK:override=PERCENT` for a command at a tick of the cycle.
+
+use handcnc::background::parameters::Parameters;
+use handcnc::background::status::Faults;
+use handcnc::foreground::Command;
+use handcnc::foreground::rehearsal::Rehearsal;
+use interp_core::channel::{Report, State};
+use interp_core::config::TICK_CLOCKS;
+use interp_core::train::Levels;
+use stm32f4xx_hal::pac::{GPIOE, Peripherals, TIM1, TIM5};
+use stm32f4xx_hal::prelude::*;
+use stm32f4xx_hal::rcc::Config;
+
+use super::{Board, link_port};
+
+/// Sets the board up.
+pub(crate) fn setup(dp: Peripherals) -> Board {
+    let mut rcc = dp.RCC.freeze(Config::hsi());
+    let gpioa = dp.GPIOA.split(&mut rcc);
+    let (receiver, sender) = link_port::open(dp.USART2, (gpioa.pa2, gpioa.pa3), &mut rcc);
+    let mut parameters = Parameters::new();
+    let mut rehearsal = Rehearsal::new();
+    each_word(&mut |word| {
+        if !set(word, &mut parameters, &mut rehearsal) {
+            fail(word);
+        }
+    });
+    Board {
+        timer: StepTimer::start(dp.TIM5, dp.TIM1),
+        port: StepPort(dp.GPIOE),
+        drives: Drives,
+        emergency: EmergencyInput,
+        receiver,
+        sender,
+        bench: Bench { rehearsal, state: State::Idle, mark: Mark },
+        parameters,
+    }
+}
+
+/// The train's clock.
+pub(crate) struct StepTimer {
+    timer: TIM5,
+    shadow: TIM1,
+}
+
+impl StepTimer {
+    fn start(timer: TIM5, shadow: TIM1) -> Self {
+        timer.dier().write(|w| w.uie().set_bit());
+        timer.arr().write(|w| w.arr().set(nanoseconds(TICK_CLOCKS)));
+        timer.cr1().write(|w| w.cen().set_bit());
+        Self { timer, shadow }
+    }
+
+    /// Takes the interrupt.
+    #[inline]
+    pub(crate) fn acknowledge(&mut self) {
+        self.timer.sr().write(|w| w.uif().clear_bit());
+    }
+
+    /// Lets the present event last `clocks`.
+    #[inline]
+    pub(crate) fn load(&mut self, clocks: u32) {
+        // SAFETY: any value may stand there; the emulator only logs it.
+        #[allow(unsafe_code, reason = "a register that the emulator lacks")]
+        self.shadow.arr().write(|w| unsafe { w.bits(clocks) });
+        self.timer.arr().write(|w| w.arr().set(nanoseconds(clocks)));
+    }
+
+    /// The emulated handler is never late.
+    pub(crate) const fn late(&self) -> u32 {
+        0
+    }
+}
+
+/// Clocks of 12 MHz in nanoseconds, rounded down.
+const fn nanoseconds(clocks: u32) -> u32 {
+    clocks.wrapping_mul(250) / 3
+}
+
+/// The step port.
+pub(crate) struct StepPort(GPIOE);
+
+impl StepPort {
+    /// Writes all levels.
+    #[inline]
+    pub(crate) fn write(&mut self, levels: Levels) {
+        // SAFETY: any value may stand there; the emulator only logs it.
+        #[allow(unsafe_code, reason = "a register that the emulator lacks")]
+        self.0.odr().write(|w| unsafe { w.bits(u32::from(levels.bits())) });
+    }
+}
+
+/// No drives.
+pub(crate) struct Drives;
+
+impl Drives {
+    /// Nothing to switch on.
+    pub(crate) fn enable(&mut self) {}
+
+    /// Nothing to switch off but the train.
+    pub(crate) fn off(&mut self) {
+        // SAFETY: one write that stops the counter; whatever the owner of the timer does next starts nothing.
+        #[allow(unsafe_code, reason = "an emergency stops a timer that another task owns")]
+        unsafe { &*TIM5::ptr() }.cr1().write(|w| w.cen().clear_bit());
+    }
+}
+
+/// No emergency input.
+pub(crate) struct EmergencyInput;
+
+impl EmergencyInput {
+    /// Nothing to take.
+    pub(crate) fn acknowledge(&mut self) {}
+}
+
+/// Commands at given ticks, and marks in the log.
+pub(crate) struct Bench {
+    rehearsal: Rehearsal,
+    state: State,
+    mark: Mark,
+}
+
+impl Bench {
+    /// Commands that are due.
+    pub(crate) fn due(&mut self, state: State, obey: &mut impl FnMut(Command)) {
+        self.rehearsal.due(state, obey);
+    }
+
+    /// Marks a change of state, and faults, in the log.
+    pub(crate) fn saw(&mut self, report: &Report, faults: Faults) {
+        if faults != Faults::default() {
+            self.mark.fault(faults);
+        }
+        if report.state != self.state {
+            self.state = report.state;
+            self.mark.write(report.state);
+        }
+    }
+}
+
+/// TIM1's CCR1 and CCR2.
+struct Mark;
+
+impl Mark {
+    fn write(&mut self, state: State) {
+        let word = handcnc::foreground::state_word(state);
+        // SAFETY: the emulator has no TIM1 and logs the write; the owner of TIM1 uses another register.
+        #[allow(unsafe_code, reason = "a register that the emulator lacks")]
+        unsafe { &*TIM1::ptr() }.ccr1().write(|w| unsafe { w.bits(word) });
+    }
+
+    #[cold]
+    fn fault(&mut self, faults: Faults) {
+        let word = faults.underruns << 16 | faults.overruns & 0xFFFF;
+        // SAFETY: as for the state.
+        #[allow(unsafe_code, reason = "a register that the emulator lacks")]
+        unsafe { &*TIM1::ptr() }.ccr2().write(|w| unsafe { w.bits(word) });
+    }
+}
+
+/// Gives the words of semihosting's command line but for the first, the program's name.
+fn each_word(give: &mut impl FnMut(&str)) {
+    const GET_COMMAND_LINE: usize = 0x15;
+    let mut text = [0_u8; 2048];
+    let mut block = [text.as_mut_ptr() as usize, text.len()];
+    // SAFETY: semihosting writes at most as many bytes as the block says into the buffer that it names.
+    #[allow(unsafe_code, reason = "a call to the emulator")]
+    let answer = unsafe { cortex_m_semihosting::syscall1(GET_COMMAND_LINE, block.as_mut_ptr() as usize) };
+    if answer != 0 {
+        return;
+    }
+    for word in text.split(|byte| matches!(byte, 0 | b' ')).filter(|word| !word.is_empty()).skip(1) {
+        give(core::str::from_utf8(word).unwrap_or("?"));
+    }
+}
+
+/// Obeys one word. False where it is none.
+fn set(word: &str, parameters: &mut Parameters, rehearsal: &mut Rehearsal) -> bool {
+    if let Some((tick, what)) = word.split_once(':') {
+        let command = match what.split_once('=') {
+            None if what == "hold" => Command::Hold,
+            None if what == "start" => Command::Start,
+            None if what == "reset" => Command::Reset,
+            Some(("override", percent)) => match percent.parse() {
+                Ok(percent) => Command::FeedOverride(percent),
+                Err(_) => return false,
+            },
+            _ => return false,
+        };
+        return tick.parse().is_ok_and(|tick| rehearsal.set(tick, command));
+    }
+    word.split_once('=').is_some_and(|(name, value)| parameters.set(name, value).is_ok())
+}
+
+/// Says what is wrong with the emulator's command line, and ends it.
+fn fail(word: &str) {
+    cortex_m_semihosting::hprintln!("the image does not understand `{}`", word);
+    safe()
+}
+
+/// Waits for the next interrupt. While the lathe is hungry for blocks the emulated time is braked instead, so that a
+/// sender on a busy computer is never late: each call costs the emulator microseconds, the machine a few instructions.
+pub(crate) fn sleep(hungry: bool) {
+    if !hungry {
+        return cortex_m::asm::wfi();
+    }
+    const CLOCK: usize = 0x10;
+    // SAFETY: the call takes no argument and returns a number.
+    #[allow(unsafe_code, reason = "a call to the emulator")]
+    let _: usize = unsafe { cortex_m_semihosting::syscall1(CLOCK, 0) };
+}
+
+/// Where a fault ends: the emulator, too.
+pub(crate) fn safe() -> ! {
+    cortex_m::interrupt::disable();
+    cortex_m_semihosting::debug::exit(cortex_m_semihosting::debug::EXIT_FAILURE);
+    loop {
+        cortex_m::asm::nop();
+    }
+}

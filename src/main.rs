@@ -1,0 +1,199 @@
+#![cfg_attr(target_os = "none", no_std, no_main)]
+//! The firmware: the RTIC app and nothing else.
+//!
+//! What the tasks do stands in the library, where desktop tests reach it; what a register is stands in `board`.
+//! On the desktop this is an empty program.
+
+#[cfg(target_os = "none")]
+mod board;
+
+#[cfg(not(target_os = "none"))]
+fn main() {}
+
+/// What runs when. A task preempts all of lower priority; a test compares this table with the attributes.
+///
+/// | prio | task          | trigger                         | shared | does                                        |
+/// |------|---------------|---------------------------------|--------|---------------------------------------------|
+/// | 5    | `emergency`   | EXTI15_10                       | none   | drivers off, spindle off, train stopped     |
+/// | 4    | `pulse`       | TIM5                            | none   | plays one event of the train                |
+/// | 3    | `interpolate` | I2C3_ER, pended by `pulse`      | none   | makes the tick after the one being played   |
+/// | 2    | `receive`     | USART2                          | none   | bytes and real-time commands into queues    |
+/// | 1    | `edit`        | the bell: `interpolate`, `receive` | none | the link: replies, compiles, fills the queue |
+/// | 0    | `idle`        | nothing else to do              | none   | sleeps                                      |
+///
+/// Between the tasks stand single-producer queues and published words, never a lock.
+#[cfg(target_os = "none")]
+#[rtic::app(device = stm32f4xx_hal::pac, peripherals = true, dispatchers = [I2C3_EV])]
+mod app {
+    use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
+
+    use handcnc::background::inbox::{Inbox, LOST};
+    use handcnc::background::link::{Link, Realtime};
+    use handcnc::background::status::{Faults, Status};
+    use handcnc::foreground::train_queue::{Player, TrainQueue, Writer};
+    use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
+    use heapless::spsc::{Consumer, Producer, Queue};
+    use interp_core::block::Block;
+    use interp_core::train::Levels;
+    use interp_core::units::Lattice;
+    use stm32f4xx_hal::pac::Interrupt;
+
+    use crate::board::{self, Bell, Bench, Board, Drives, EmergencyInput, Receiver, Sender, StepPort, StepTimer};
+
+    /// Bytes on their way to the link, one less than the length: what a sender may have under way.
+    const BYTES: usize = 256;
+    /// Real-time commands on their way to the link, one less than the length.
+    const REALTIME: usize = 32;
+
+    static BELL: Bell = Bell::new();
+    static STATUS: Status = Status::new();
+    static UNDERRUNS: AtomicU32 = AtomicU32::new(0);
+    static LATE: AtomicU32 = AtomicU32::new(0);
+    static HUNGRY: AtomicBool = AtomicBool::new(true);
+
+    #[shared]
+    struct Shared {}
+
+    #[local]
+    struct Local {
+        drives: Drives,
+        emergency: EmergencyInput,
+        timer: StepTimer,
+        port: StepPort,
+        player: Player<'static>,
+        foreground: Foreground<'static>,
+        train: Writer<'static>,
+        bench: Bench,
+        receiver: Receiver,
+        inbox: Inbox<'static>,
+        link: Link,
+        sender: Sender,
+        bytes: Consumer<'static, u8>,
+        realtime: Consumer<'static, Realtime>,
+        blocks: Producer<'static, Block>,
+        commands: Producer<'static, Command>,
+    }
+
+    #[init(local = [
+        train_queue: TrainQueue = TrainQueue::new(),
+        bytes_queue: Queue<u8, BYTES> = Queue::new(),
+        realtime_queue: Queue<Realtime, REALTIME> = Queue::new(),
+        blocks_queue: Queue<Block, BLOCK_QUEUE> = Queue::new(),
+        commands_queue: Queue<Command, COMMAND_QUEUE> = Queue::new(),
+    ])]
+    fn init(cx: init::Context) -> (Shared, Local) {
+        let Board { timer, port, mut drives, emergency, receiver, mut sender, bench, parameters } =
+            board::setup(cx.device);
+        let Ok(machine) = parameters.machine() else { board::safe() };
+        let (train, player) = cx.local.train_queue.split();
+        let (bytes_in, bytes) = cx.local.bytes_queue.split();
+        let (realtime_in, realtime) = cx.local.realtime_queue.split();
+        let (blocks, blocks_out) = cx.local.blocks_queue.split();
+        let (commands, commands_out) = cx.local.commands_queue.split();
+        let start = parameters.start();
+        let position = Lattice { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) };
+        let mut foreground = Foreground::new(&machine, position, blocks_out, commands_out);
+        foreground.obey(Command::FeedOverride(parameters.feed_override()));
+        let mut link = Link::new(parameters, machine);
+        link.banner(&mut sender);
+        drives.enable();
+        rtic::pend(Interrupt::I2C3_ER); // the first tick, played while the second is made
+        let _ = edit::spawn(); // cannot fail: not spawned before
+        let inbox = Inbox::new(bytes_in, realtime_in);
+        (
+            Shared {},
+            Local {
+                drives,
+                emergency,
+                timer,
+                port,
+                player,
+                foreground,
+                train,
+                bench,
+                receiver,
+                inbox,
+                link,
+                sender,
+                bytes,
+                realtime,
+                blocks,
+                commands,
+            },
+        )
+    }
+
+    /// Everything off; the train stops and the position is unverified from now on.
+    #[task(binds = EXTI15_10, priority = 5, local = [drives, emergency])]
+    fn emergency(cx: emergency::Context) {
+        cx.local.drives.off();
+        cx.local.emergency.acknowledge();
+    }
+
+    /// Plays one event of the train.
+    #[task(binds = TIM5, priority = 4, local = [timer, port, player])]
+    fn pulse(cx: pulse::Context) {
+        let pulse::LocalResources { timer, port, player, .. } = cx.local;
+        timer.acknowledge();
+        let play = player.next_or_idle();
+        port.write(Levels::from_bits(play.levels));
+        timer.load(play.interval);
+        if play.begins {
+            UNDERRUNS.store(player.underruns(), Relaxed);
+            LATE.store(timer.late(), Relaxed);
+            rtic::pend(Interrupt::I2C3_ER);
+        }
+    }
+
+    /// Makes the tick after the one being played.
+    #[task(binds = I2C3_ER, priority = 3, local = [foreground, train, bench])]
+    fn interpolate(cx: interpolate::Context) {
+        let interpolate::LocalResources { foreground, train, bench, .. } = cx.local;
+        bench.due(foreground.state(), &mut |command| foreground.obey(command));
+        let report = foreground.tick(&mut |event| train.put(event));
+        let faults =
+            Faults { underruns: UNDERRUNS.load(Relaxed), overruns: train.overruns(), late: LATE.load(Relaxed) };
+        bench.saw(&report, faults);
+        train.publish();
+        STATUS.publish(&report, foreground, faults);
+        HUNGRY.store(foreground.is_hungry(), Relaxed);
+        BELL.ring();
+    }
+
+    /// Sorts what the link receives.
+    #[task(binds = USART2, priority = 2, local = [receiver, inbox])]
+    fn receive(cx: receive::Context) {
+        while let Some(byte) = cx.local.receiver.byte() {
+            cx.local.inbox.take(byte);
+        }
+        BELL.ring();
+    }
+
+    /// Talks with the sender and compiles what it sends.
+    #[task(priority = 1, local = [link, sender, bytes, realtime, blocks, commands])]
+    async fn edit(cx: edit::Context) {
+        let edit::LocalResources { link, sender, bytes, realtime, blocks, commands, .. } = cx.local;
+        loop {
+            BELL.sleep().await;
+            loop {
+                while let Some(byte) = bytes.dequeue() {
+                    if byte == LOST { link.damaged() } else { link.receive(byte) }
+                }
+                while let Some(what) = realtime.dequeue() {
+                    link.realtime(what, commands, &STATUS.snapshot(), sender);
+                }
+                if !link.work(blocks, commands, &STATUS.snapshot(), sender) {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Sleeps.
+    #[idle]
+    fn idle(_: idle::Context) -> ! {
+        loop {
+            board::sleep(HUNGRY.load(Relaxed));
+        }
+    }
+}
