@@ -5,6 +5,9 @@ use std::time::Instant;
 
 use crate::links;
 
+/// Programs whose pulses on the emulated chip are compared with the desktop's.
+const EMULATED: [&str; 2] = ["emulate", "demo"];
+
 /// Runs cargo; says what and how long.
 fn cargo(what: &str, arguments: &[&str], environment: &[(&str, &str)]) -> Result<(), String> {
     eprintln!("\n== {what}: cargo {}", arguments.join(" "));
@@ -39,15 +42,60 @@ pub(crate) fn test() -> Result<(), String> {
     // optimised, as the property tests interpolate millions of pulses, but with the checks of a debug build
     let checks =
         [("CARGO_PROFILE_RELEASE_DEBUG_ASSERTIONS", "true"), ("CARGO_PROFILE_RELEASE_OVERFLOW_CHECKS", "true")];
-    cargo("tests", &["test", "--workspace", "--release", "--target-dir", "target/checked"], &checks)
+    cargo("tests", &["test", "--workspace", "--release", "--target-dir", "target/checked"], &checks)?;
+    let tool = std::env::current_exe().map_err(|error| error.to_string())?;
+    for arguments in [&["firmware"][..], &EMULATED] {
+        eprintln!("\n== cargo xtask {}", arguments.join(" "));
+        let status = Command::new(&tool).args(arguments).status().map_err(|error| error.to_string())?;
+        if !status.success() {
+            return Err(format!("cargo xtask {} failed", arguments.join(" ")));
+        }
+    }
+    Ok(())
 }
 
 /// The property tests of whole programs, at length.
-pub(crate) fn soak(cases: Option<&str>) -> Result<(), String> {
-    let cases = cases.unwrap_or("20000");
-    if cases.parse::<u32>().is_err() {
-        return Err(format!("{cases} is not a number of cases"));
-    }
+pub(crate) fn soak(cases: u32) -> Result<(), String> {
+    let cases = &*cases.to_string();
     let environment = [("HANDCNC_CASES", cases), ("PROPTEST_CASES", cases)];
     cargo("soak", &["test", "--release", "-p", "host-tests", "-p", "interp-core", "-p", "measure"], &environment)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    /// Priorities by task: of the table above the app, and of the attributes.
+    fn plans() -> (BTreeMap<String, u8>, BTreeMap<String, u8>) {
+        let source = std::fs::read_to_string(crate::root().join("src/main.rs")).unwrap();
+        let (mut table, mut attributes) = (BTreeMap::new(), BTreeMap::new());
+        let mut attribute: Option<u8> = None;
+        for line in source.lines().map(str::trim) {
+            if let Some(row) = line.strip_prefix("/// |") {
+                let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+                if let Ok(priority) = cells[0].parse() {
+                    table.insert(cells[1].trim_matches('`').to_owned(), priority);
+                }
+            } else if line.starts_with("#[task(") {
+                let rest = line.split_once("priority = ").expect("every task has a priority").1;
+                let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
+                attribute = Some(digits.parse().unwrap());
+            } else if line == "#[idle]" {
+                attribute = Some(0);
+            } else if let Some(rest) = line.strip_prefix("async fn ").or_else(|| line.strip_prefix("fn "))
+                && let Some(priority) = attribute.take()
+            {
+                attributes.insert(rest.split('(').next().unwrap().to_owned(), priority);
+            }
+        }
+        (table, attributes)
+    }
+
+    #[test]
+    fn the_table_above_the_app_has_every_task_with_its_priority() {
+        let (table, attributes) = plans();
+        assert_eq!(table, attributes);
+        assert_eq!(table.len(), 6);
+        assert!(table["emergency"] > table["pulse"] && table["pulse"] > table["interpolate"]);
+    }
 }

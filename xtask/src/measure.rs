@@ -1,0 +1,196 @@
+//! What a step costs: executed instructions on the emulated chip.
+//!
+//! QEMU runs the image with a plugin (`plugin/count.c`) that counts the instructions of each call of a handler,
+//! without those of handlers that preempted it. Each call of `pulse` plays one event and each call of `interpolate`
+//! makes one tick, so the counts are put beside the events of the same run, which are compared with the desktop's
+//! meanwhile: figures of a wrong train would be none.
+//!
+//! A **step event** is an event with at least one rising edge; its falling edge is part of its cost. Means are over
+//! all ticks at full speed (at least 95 % of the steps of the busiest tick); the worst is the costliest of them. What
+//! `interpolate` takes besides steps is the cost at no step of the straight line through the costs of the cycle's
+//! moving ticks. Entry and exit of the interrupt are no instructions (24 cycles for each call).
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context as _, Result, bail};
+use serde_json::{Map, Value, json};
+
+use crate::emulate::{self, Played, Setting};
+use crate::firmware::{self, Board};
+use crate::image::Image;
+use crate::qemu;
+use crate::toolchain::{Toolchain, apt};
+
+/// `cargo xtask measure`.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Boards whose flash and RAM are shown.
+    #[arg(long, value_delimiter = ',', default_value = "f407,f411,f446,qemu")]
+    board: Vec<Board>,
+    /// An image to measure instead of the one that this builds.
+    #[arg(long)]
+    image: Option<PathBuf>,
+}
+
+/// A case: its name, its program, its parameters.
+struct Case(&'static str, &'static str, &'static [&'static str]);
+
+const PULSES: [&str; 4] = ["x.pulse_nm=1000", "z.pulse_nm=1000", "x.max_feed=6000", "z.max_feed=6000"];
+
+const CASES: [Case; 3] = [
+    Case("line 4:3, X at 80 kHz", "G21 G90\nG4 P0.05\nG1 X40 Z30 F6000\nM2\n", &PULSES),
+    Case("arc, R 10 mm, 25 kHz", "G21 G90\nG4 P0.05\nG3 X-10 Z-10 I-10 K0 F1500\nM2\n", &PULSES),
+    Case("line 1:1, 71 kHz", "G21 G90\nG4 P0.05\nG1 X30 Z30 F6000\nM2\n", &PULSES),
+];
+
+/// Handlers by the names of their vectors; the first two are reported.
+const HANDLERS: [&str; 5] = ["TIM5", "I2C3_ER", "USART2", "I2C3_EV", "EXTI15_10"];
+
+/// `cargo xtask measure`.
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    qemu::find()?;
+    let toolchain = Toolchain::find()?;
+    let mut sizes = Map::new();
+    for board in &arguments.board {
+        let (flash, ram) = Image::read(&firmware::build(&toolchain, *board)?)?.sizes();
+        sizes.insert(board.name().into(), json!({ "flash_bytes": flash, "ram_bytes": ram }));
+    }
+    let elf = match &arguments.image {
+        Some(image) => image.clone(),
+        None => firmware::build(&toolchain, Board::Qemu)?,
+    };
+    let folder = tempfile::tempdir()?;
+    let plugin = compile(folder.path())?;
+    let mut cases = Map::new();
+    for case in &CASES {
+        cases.insert(case.0.into(), measure(&elf, &plugin, folder.path(), case).with_context(|| case.0)?);
+    }
+    let report = json!({ "unit": "executed instructions", "cases": cases, "boards": sizes });
+    println!("{}", serde_json::to_string_pretty(&report)?);
+    Ok(())
+}
+
+/// Compiles the plugin.
+fn compile(folder: &Path) -> Result<PathBuf> {
+    let source = crate::root().join("xtask/plugin/count.c");
+    let plugin = folder.join("count.so");
+    let runs = || {
+        Command::new("cc")
+            .args(["-O2", "-Wall", "-shared", "-fPIC", "-fvisibility=hidden", "-o"])
+            .arg(&plugin)
+            .arg(&source)
+            .status()
+    };
+    let status = match runs() {
+        Ok(status) => status,
+        Err(_) => {
+            apt(&["gcc", "libc6-dev"]).context("a C compiler is missing: apt-get install gcc libc6-dev")?;
+            runs()?
+        }
+    };
+    if !status.success() {
+        bail!("cc failed on {}", source.display());
+    }
+    Ok(plugin)
+}
+
+/// One tick's figures.
+#[derive(Copy, Clone, Debug, Default)]
+struct Tick {
+    steps: u64,
+    pulse: u64,
+    interpolate: u64,
+}
+
+fn measure(elf: &Path, plugin: &Path, folder: &Path, case: &Case) -> Result<Value> {
+    let Case(_, program, parameters) = case;
+    let counts = folder.join("counts");
+    let image = Image::read(elf)?;
+    let mut option = format!("{},out={}", plugin.display(), counts.display());
+    for name in HANDLERS {
+        let at = image.address(name).with_context(|| format!("the image has no handler {name}"))?;
+        let size = image.functions.get(&at).map_or(0, |function| function.size);
+        option.push_str(&format!(",h={name}:{at:x}:{:x}", at + size));
+    }
+    let set: Vec<String> = parameters.iter().map(|text| (*text).to_owned()).collect();
+    let setting = Setting::new(&set)?;
+    let played = emulate::play(elf, &setting, program.as_bytes(), &["-plugin".into(), option])?;
+    let text = fs::read_to_string(&counts).context("the plugin wrote nothing")?;
+    let of = |wanted: &str| -> Result<Vec<u64>> {
+        let lines = text.lines().filter_map(|line| line.split_once(' '));
+        lines.filter(|(name, _)| *name == wanted).map(|(_, count)| Ok(count.parse()?)).collect()
+    };
+    if of("anomalies")? != [0] {
+        bail!("the plugin met calls that it does not understand");
+    }
+    figures(&played, &of("TIM5")?, &of("I2C3_ER")?)
+}
+
+fn figures(played: &Played, pulse: &[u64], interpolate: &[u64]) -> Result<Value> {
+    let mut ticks = Vec::new();
+    let mut at = usize::try_from(played.events_before)?;
+    let first = usize::try_from(played.ticks_before)?;
+    for (number, (events, steps)) in played.ticks.iter().enumerate() {
+        let calls = pulse.get(at..at + events).context("the plugin saw fewer events than were played")?;
+        let made = *interpolate.get(first + number).context("the plugin saw fewer ticks than were played")?;
+        ticks.push(Tick { steps: *steps as u64, pulse: calls.iter().sum(), interpolate: made });
+        at += events;
+    }
+    let most = ticks.iter().map(|tick| tick.steps).max().unwrap_or(0);
+    if most == 0 {
+        bail!("nothing moved");
+    }
+    let full: Vec<Tick> = ticks.iter().copied().filter(|tick| tick.steps * 100 >= most * 95).collect();
+    // the programs begin with a dwell; its first tick takes the block
+    let idle: Vec<Tick> =
+        ticks.iter().take_while(|tick| tick.steps == 0).skip(2).map(|tick| Tick { steps: 1, ..*tick }).collect();
+    let idle = idle.get(..idle.len().saturating_sub(1)).unwrap_or_default().to_vec();
+    let calls = pulse.get(usize::try_from(played.events_before)?..at).unwrap_or_default();
+    let mut moving: Vec<Tick> = ticks.iter().copied().filter(|tick| tick.steps > 0).collect();
+    // the first and the last moving tick begin and end a block
+    moving.pop();
+    let (fixed, per_step) = line(moving.get(1..).unwrap_or_default());
+    Ok(json!({
+        "step_events_per_tick": most,
+        "per_step_event": {
+            "pulse": mean_and_worst(&full, |tick| tick.pulse),
+            "interpolate": mean_and_worst(&full, |tick| tick.interpolate),
+            "all": mean_and_worst(&full, |tick| tick.pulse + tick.interpolate),
+        },
+        "per_call_of_pulse": { "mean": rounded(calls.iter().sum::<u64>() as f64 / calls.len().max(1) as f64), "worst": calls.iter().max() },
+        "per_tick_of_interpolate": {
+            "worst": ticks.iter().map(|tick| tick.interpolate).max(),
+            "fixed": rounded(fixed),
+            "for_each_step_event": rounded(per_step),
+        },
+        "per_idle_tick": {
+            "pulse": mean_and_worst(&idle, |tick| tick.pulse),
+            "interpolate": mean_and_worst(&idle, |tick| tick.interpolate),
+        },
+    }))
+}
+
+/// Mean and worst of a cost for each step event.
+fn mean_and_worst(ticks: &[Tick], cost: impl Fn(&Tick) -> u64) -> Value {
+    let steps: u64 = ticks.iter().map(|tick| tick.steps).sum();
+    let all: u64 = ticks.iter().map(&cost).sum();
+    let worst = ticks.iter().map(|tick| cost(tick) as f64 / tick.steps.max(1) as f64).fold(0.0, f64::max);
+    json!({ "mean": rounded(all as f64 / steps.max(1) as f64), "worst": rounded(worst) })
+}
+
+/// The straight line through the costs of `interpolate` over the steps of a tick: at none, and for each.
+fn line(ticks: &[Tick]) -> (f64, f64) {
+    let count = ticks.len().max(1) as f64;
+    let mean = |of: &dyn Fn(&Tick) -> f64| ticks.iter().map(of).sum::<f64>() / count;
+    let (steps, cost) = (mean(&|tick| tick.steps as f64), mean(&|tick| tick.interpolate as f64));
+    let product = mean(&|tick| (tick.steps as f64 - steps) * (tick.interpolate as f64 - cost));
+    let square = mean(&|tick| (tick.steps as f64 - steps).powi(2));
+    let slope = if square > 0.0 { product / square } else { 0.0 };
+    (cost - slope * steps, slope)
+}
+
+fn rounded(value: f64) -> f64 {
+    (value * 10.0).round() / 10.0
+}
