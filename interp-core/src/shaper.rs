@@ -37,12 +37,11 @@ struct Pins {
     hold: i32,
     /// When the step pin must go low; [`NEVER`] while it is low.
     fall: i32,
-    /// Earliest next rise after the last fall.
+    /// Earliest next rise: after the last fall and the last change of direction; while the pin is high, what it will
+    /// be if it falls in time.
     ready: i32,
     /// Earliest change of direction after the last rise.
     free: i32,
-    /// Earliest rise after the last change of direction.
-    settled: i32,
 }
 
 /// Long before any tick.
@@ -58,7 +57,6 @@ impl Pins {
             fall: NEVER,
             ready: LONG_AGO,
             free: LONG_AGO,
-            settled: LONG_AGO,
         }
     }
 
@@ -69,7 +67,6 @@ impl Pins {
         }
         self.ready = earlier(self.ready);
         self.free = earlier(self.free);
-        self.settled = earlier(self.settled);
     }
 }
 
@@ -106,8 +103,8 @@ impl Shaper {
     /// Shapes with other figures from now on. The pins stay as they are; what they owe from before, they owe as before.
     pub const fn configure(&mut self, machine: &Machine) {
         let new = Self::new(machine);
-        self.x = Pins { fall: self.x.fall, ready: self.x.ready, free: self.x.free, settled: self.x.settled, ..new.x };
-        self.z = Pins { fall: self.z.fall, ready: self.z.ready, free: self.z.free, settled: self.z.settled, ..new.z };
+        self.x = Pins { fall: self.x.fall, ready: self.x.ready, free: self.x.free, ..new.x };
+        self.z = Pins { fall: self.z.fall, ready: self.z.ready, free: self.z.free, ..new.z };
         self.event_min = new.event_min;
     }
 
@@ -134,11 +131,13 @@ impl Shaper {
         if x != 0 {
             levels = levels.with_step(Axis::X, true);
             self.x.fall = at.wrapping_add(self.x.width);
+            self.x.ready = self.x.fall.wrapping_add(self.x.space);
             self.x.free = at.wrapping_add(self.x.hold);
         }
         if z != 0 {
             levels = levels.with_step(Axis::Z, true);
             self.z.fall = at.wrapping_add(self.z.width);
+            self.z.ready = self.z.fall.wrapping_add(self.z.space);
             self.z.free = at.wrapping_add(self.z.hold);
         }
         self.put(at, levels, out);
@@ -179,8 +178,7 @@ impl Shaper {
         if self.levels.plus(axis) != plus {
             self.turn(axis, plus, out);
         }
-        let pins = self.pins(axis);
-        due.max(pins.ready).max(pins.settled)
+        due.max(self.pins(axis).ready)
     }
 
     /// Lowers what is due next.
@@ -199,7 +197,7 @@ impl Shaper {
         let levels = self.lowered(at).with_plus(axis, plus);
         self.put(at, levels, out);
         let pins = self.pins(axis);
-        pins.settled = at.wrapping_add(pins.setup);
+        pins.ready = pins.ready.max(at.wrapping_add(pins.setup));
     }
 
     /// Lowers pins that are due long enough before `until` for another event then.
@@ -226,12 +224,12 @@ impl Shaper {
         if self.x.fall <= at {
             levels = levels.with_step(Axis::X, false);
             self.x.fall = NEVER;
-            self.x.ready = at.wrapping_add(self.x.space);
+            self.x.ready = self.x.ready.max(at.wrapping_add(self.x.space));
         }
         if self.z.fall <= at {
             levels = levels.with_step(Axis::Z, false);
             self.z.fall = NEVER;
-            self.z.ready = at.wrapping_add(self.z.space);
+            self.z.ready = self.z.ready.max(at.wrapping_add(self.z.space));
         }
         levels
     }
@@ -265,14 +263,7 @@ impl Shaper {
     }
 }
 
-/// An interval: between 1 and one tick by construction.
+/// An interval: between 1 and one tick by construction, so it never wraps.
 const fn clocks(interval: i32) -> u32 {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0..=65535")]
-    if interval < 0 {
-        0
-    } else if interval > 65_535 {
-        65_535
-    } else {
-        interval as u32
-    }
+    interval.cast_unsigned()
 }
