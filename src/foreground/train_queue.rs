@@ -16,6 +16,7 @@ use interp_core::train::{Event, Levels};
 /// Places in the queue; one stays empty. Two ticks of events 2 us apart, and some to spare.
 pub const TRAIN_QUEUE: usize = 1024;
 
+#[expect(clippy::cast_possible_truncation, reason = "1024")]
 const MASK: u32 = TRAIN_QUEUE as u32 - 1;
 const _: () = assert!(TRAIN_QUEUE.is_power_of_two());
 
@@ -154,7 +155,6 @@ impl Player<'_> {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "the high half of 32 bits")]
 const fn levels(word: u32) -> u16 {
     (word >> 16) as u16
 }
