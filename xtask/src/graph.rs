@@ -159,7 +159,7 @@ impl Graph {
         while at < end {
             let content = image.contents.range(..=at).next_back().map(|(_, content)| *content);
             if content == Some(Content::Data) {
-                let whole = at % 4 == 0 && at + 4 <= end;
+                let whole = at.is_multiple_of(4) && at + 4 <= end;
                 if whole && let Some(word) = image.word(at) {
                     load(word);
                 }
