@@ -5,7 +5,7 @@
 //! the order of a program's own writes is all the order that is needed. The writer publishes a tick at once: it is
 //! played whole or not yet.
 //!
-//! A word is the event with [`FIRST`] set on the first event of a tick: the player asks for the next tick when it
+//! A word is the event with `FIRST` set on the first event of a tick: the player asks for the next tick when it
 //! begins one, so a tick is always ready behind the one being played.
 
 use core::sync::atomic::{AtomicU32, Ordering, compiler_fence};
