@@ -149,7 +149,7 @@ fn small_arcs_in_full() {
         for radius in (12..=80).map(|k| f64::from(k) * 100.0) {
             for (cx, cz) in [(0, 0), (500, 0), (0, 500), (500, 500), (250, 130), (790, 410), (999, 1)] {
                 for from in 0..16 {
-                    for sweep in 1..=8 {
+                    for sweep in 1..=16 {
                         for sense in [Sense::Clockwise, Sense::CounterClockwise] {
                             let case = Case {
                                 pulses,

@@ -146,8 +146,12 @@ impl Metric {
         let off_z = Self::place(self.z, start.z).wrapping_sub(i128::from(centre.1) << 12);
         let square = off_x.saturating_mul(off_x).saturating_add(off_z.saturating_mul(off_z));
         let radius = i128::from(root_wide(square.unsigned_abs()));
+        let coarser = if self.across > self.along { self.x } else { self.z };
+        // a whole turn about less than a pulse stays where it is
+        if delta == (0, 0) && radius < Self::place(coarser, 1) {
+            return Prepared::Nothing;
+        }
         if matches!(reach, Reach::Short) && delta.0.unsigned_abs() <= 1 && delta.1.unsigned_abs() <= 1 {
-            let coarser = if self.across > self.along { self.x } else { self.z };
             if radius > Self::place(coarser, 3) {
                 return Prepared::Chord;
             }

@@ -196,7 +196,9 @@ impl Path {
         let round = |start: PerAxis<i64>, end: PerAxis<i64>, centre_nm: PerAxis<i64>, clockwise: bool| {
             let (start_at, end_at) = (scale.wide_place(start), scale.wide_place(end));
             let arc = if start == end {
-                Arc::whole(start_at, exact(centre_nm), clockwise)
+                // a whole turn about less than a pulse stays where it is
+                let turns = (start_at - exact(centre_nm)).length() >= scale.coarser;
+                if turns { Arc::whole(start_at, exact(centre_nm), clockwise) } else { None }
             } else {
                 Arc::new(start_at, end_at, exact(centre_nm), clockwise)
             };

@@ -141,7 +141,9 @@ fn compare(of: Programmed) -> Result<(), TestCaseError> {
             points.extend(half);
         }
     }
-    if whole_turn {
+    let small = distance(first, last) < 0.5 && near < 1.0;
+    prop_assume!((near - 1.0).abs() > 1e-6);
+    if whole_turn && !small {
         let arc = samples(first, last, middle, clockwise);
         let round = nearest(&arc);
         walked = farthest(&round, &arc);
