@@ -151,10 +151,9 @@ impl Metric {
         if delta == (0, 0) && radius < Self::place(coarser, 1) {
             return Prepared::Nothing;
         }
-        if matches!(reach, Reach::Short) && delta.0.unsigned_abs() <= 1 && delta.1.unsigned_abs() <= 1 {
-            if radius > Self::place(coarser, 3) {
-                return Prepared::Chord;
-            }
+        let near = delta.0.unsigned_abs() <= 1 && delta.1.unsigned_abs() <= 1;
+        if matches!(reach, Reach::Short) && near && radius > Self::place(coarser, 3) {
+            return Prepared::Chord;
         }
         match Preparation::new(self, start, delta, centre, radius, (sense, reach)).and_then(|p| p.arc()) {
             Some((arc, turn)) => Prepared::Arc(arc, turn),
