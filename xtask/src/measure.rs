@@ -37,7 +37,15 @@ pub(crate) struct Arguments {
 /// A case: its name, its program, its parameters.
 struct Case(&'static str, &'static str, &'static [&'static str]);
 
-const PULSES: [&str; 4] = ["x.pulse_nm=1000", "z.pulse_nm=1000", "x.max_feed=6000", "z.max_feed=6000"];
+// a space below the default's 5 us, since 100 000 pulses a second and the tick's border need it
+const PULSES: [&str; 6] = [
+    "x.pulse_nm=1000",
+    "z.pulse_nm=1000",
+    "x.max_feed=6000",
+    "z.max_feed=6000",
+    "x.min_space_ns=4500",
+    "z.min_space_ns=4500",
+];
 
 const CASES: [Case; 3] = [
     Case("line 4:3, X at 80 kHz", "G21 G90\nG4 P0.05\nG1 X40 Z30 F6000\nM2\n", &PULSES),
