@@ -10,5 +10,6 @@ pub mod curve;
 pub mod governor;
 pub mod math;
 pub mod shaper;
+pub mod times;
 pub mod train;
 pub mod units;

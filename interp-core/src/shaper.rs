@@ -8,8 +8,13 @@
 //! Times are clocks from the start of the present tick. An event that would begin less than the minimum before a
 //! tick's border begins on it; one less than the minimum behind it waits: the border itself is always an event, so
 //! that every tick is whole. Events may run past the present tick: the next tick then begins with less room.
+//!
+//! Steps of one curve come evenly and mostly touch none of these rules: [`Shaper::run`] proves that for a row of them
+//! at once and makes them in a short loop, to the same events.
 
 use crate::config::{Machine, TICK_CLOCKS};
+use crate::curve::Step;
+use crate::times::{FRACTION, Times};
 use crate::train::{Event, Levels};
 use crate::units::Axis;
 
@@ -60,6 +65,12 @@ impl Pins {
         }
     }
 
+    /// Has made a pulse at `at` that fell `width` later.
+    const fn made(&mut self, at: i32, width: i32) {
+        self.ready = at.wrapping_add(width).wrapping_add(self.space);
+        self.free = at.wrapping_add(self.hold);
+    }
+
     /// The same figures seen from the next tick.
     const fn next_tick(&mut self) {
         if self.fall != NEVER {
@@ -70,9 +81,29 @@ impl Pins {
     }
 }
 
+const fn larger(a: i32, b: i32) -> i32 {
+    if a > b { a } else { b }
+}
+
 const fn earlier(time: i32) -> i32 {
     let moved = time.wrapping_sub(BORDER);
     if moved < LONG_AGO { LONG_AGO } else { moved }
+}
+
+/// What [`Shaper::run`] made.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Made {
+    /// Steps in all.
+    pub steps: u32,
+    /// Diagonal ones among them.
+    pub diagonals: u32,
+}
+
+/// A row of steps that touch no rule.
+struct Row {
+    count: u32,
+    /// Clocks from a step to its fall.
+    width: u32,
 }
 
 /// Turns timed steps into a train.
@@ -81,6 +112,9 @@ pub struct Shaper {
     x: Pins,
     z: Pins,
     event_min: i32,
+    /// Least clocks from one step to the next at which each step's pulse is over, and so is all it asks for, before
+    /// the next is due; [`NEVER`] where the axes' pulses differ in width.
+    quiet: i32,
     /// Levels of the last event, not yet handed out.
     levels: Levels,
     /// When it began.
@@ -91,10 +125,15 @@ impl Shaper {
     /// A shaper whose pins are all low.
     pub const fn new(machine: &Machine) -> Self {
         let (x, z) = (&machine.x, &machine.z);
+        let x = Pins::new(x.width, x.space, x.setup, x.hold);
+        let z = Pins::new(z.width, z.space, z.setup, z.hold);
+        let event_min = clamped(machine.event_min);
+        let after = larger(larger(x.space, z.space), event_min);
         Self {
-            x: Pins::new(x.width, x.space, x.setup, x.hold),
-            z: Pins::new(z.width, z.space, z.setup, z.hold),
-            event_min: clamped(machine.event_min),
+            x,
+            z,
+            event_min,
+            quiet: if x.width == z.width { larger(x.width, event_min).wrapping_add(after) } else { NEVER },
             levels: Levels::LOW,
             began: 0,
         }
@@ -106,11 +145,102 @@ impl Shaper {
         self.x = Pins { fall: self.x.fall, ready: self.x.ready, free: self.x.free, ..new.x };
         self.z = Pins { fall: self.z.fall, ready: self.z.ready, free: self.z.free, ..new.z };
         self.event_min = new.event_min;
+        self.quiet = new.quiet;
     }
 
     /// How far the train runs past the present tick, clocks.
     pub const fn ahead(&self) -> i32 {
         self.began.wrapping_sub(BORDER)
+    }
+
+    /// Makes up to `count` steps that come evenly: each is `straight`, or `diagonal` (which moves the same axis and the
+    /// other one) where `turns` says so. Makes none, or fewer, where a step touches a rule: such a step is for
+    /// [`step`](Self::step), to which all others come out the same.
+    ///
+    /// Inside a row no rule is touched: pins are low and directions set; the first step is not before either axis is
+    /// ready and an event may begin; all are spaced so that whatever one asks for is over before the next; the last
+    /// one's fall is early enough before the border.
+    #[inline(always)]
+    pub fn run(
+        &mut self,
+        times: &mut Times,
+        count: u32,
+        [straight, diagonal]: [Step; 2],
+        mut turns: impl FnMut() -> bool,
+        out: &mut impl FnMut(Event),
+    ) -> Made {
+        let mut made = Made { steps: 0, diagonals: 0 };
+        let Some(row) = self.row(times, count, diagonal, out) else { return made };
+        let low = u32::from(self.levels.bits()) << 16;
+        let up = |step: Step| {
+            let x = if step.x != 0 { Levels::LOW.with_step(Axis::X, true).bits() } else { 0 };
+            let z = if step.z != 0 { Levels::LOW.with_step(Axis::Z, true).bits() } else { 0 };
+            Event::from_word(low | u32::from(x | z) << 16 | row.width)
+        };
+        let (straight_up, diagonal_up) = (up(straight), up(diagonal));
+        // when the pins fell last, and when the last diagonal step came
+        let mut fell = self.began.cast_unsigned();
+        let (mut at, mut diagonal_at) = (0, 0);
+        let (mut time, spacing) = (times.time, times.spacing);
+        let mut left = row.count;
+        while left != 0 {
+            left = left.wrapping_sub(1);
+            at = time >> FRACTION;
+            time = time.wrapping_add(spacing);
+            out(Event::from_word(low | at.wrapping_sub(fell)));
+            fell = at.wrapping_add(row.width);
+            let event = if turns() {
+                diagonal_at = at;
+                made.diagonals = made.diagonals.wrapping_add(1);
+                diagonal_up
+            } else {
+                straight_up
+            };
+            out(event);
+        }
+        times.time = time;
+        self.began = fell.cast_signed();
+        made.steps = row.count;
+        let width = row.width.cast_signed();
+        if straight.x != 0 {
+            self.x.made(at.cast_signed(), width);
+        } else if made.diagonals != 0 && diagonal.x != 0 {
+            self.x.made(diagonal_at.cast_signed(), width);
+        }
+        if straight.z != 0 {
+            self.z.made(at.cast_signed(), width);
+        } else if made.diagonals != 0 && diagonal.z != 0 {
+            self.z.made(diagonal_at.cast_signed(), width);
+        }
+        made
+    }
+
+    /// How many of the `count` steps due at `times` touch no rule.
+    #[inline(always)]
+    fn row(&mut self, times: &Times, count: u32, diagonal: Step, out: &mut impl FnMut(Event)) -> Option<Row> {
+        let first = times.clock();
+        let mut directions = self.levels;
+        if diagonal.x != 0 {
+            directions = directions.with_plus(Axis::X, diagonal.x > 0);
+        }
+        if diagonal.z != 0 {
+            directions = directions.with_plus(Axis::Z, diagonal.z > 0);
+        }
+        if times.spacing_clocks() < self.quiet || directions != self.levels {
+            return None;
+        }
+        // what `step` would do first, too
+        self.fall_until(first, out);
+        let ready = self.x.ready.max(self.z.ready).max(self.began.wrapping_add(self.event_min));
+        let low = self.x.fall == NEVER && self.z.fall == NEVER;
+        let width = self.x.width.max(self.event_min);
+        let last = BORDER.wrapping_sub(self.event_min).wrapping_sub(width);
+        if !low || first < ready || first > last {
+            return None;
+        }
+        let room = (last.cast_unsigned().wrapping_add(1) << FRACTION).wrapping_sub(times.time).wrapping_sub(1);
+        let count = count.min(room.checked_div(times.spacing)?.wrapping_add(1));
+        (count > 0).then_some(Row { count, width: width.cast_unsigned() })
     }
 
     /// Adds a step at `due` clocks from the start of the tick, or as soon after it as the rules allow. Each of `x`

@@ -11,10 +11,11 @@ use crate::block::{Block, Motion, Output, Speed, Work};
 use crate::config::{Machine, TICK_CLOCKS};
 use crate::math::root;
 use crate::shaper::Shaper;
+use crate::times::Stretch;
 use crate::train::Event;
 use crate::units::Lattice;
 use lookahead::{Lookahead, pace};
-use runner::{Runner, Stretch};
+use runner::{Runner, Sink};
 
 /// Blocks taken in one tick while a cycle fills the look-ahead.
 const FILL_PER_TICK: usize = 16;
@@ -337,16 +338,11 @@ impl<const N: usize> Channel<N> {
         let advance = active.motion.advance(self.speed, left, exit, target, budget);
         active.done = active.done.saturating_add(advance.length);
         self.speed = advance.speed;
-        let (shaper, position) = (&mut self.shaper, &mut self.position);
-        let mut step = |at: u32, step: crate::curve::Step| {
-            shaper.step(at, step.x, step.z, out);
-            position.x = position.x.wrapping_add(i32::from(step.x));
-            position.z = position.z.wrapping_add(i32::from(step.z));
-        };
+        let mut sink = Sink { shaper: &mut self.shaper, position: &mut self.position, out };
         let stretch = Stretch { from: clock, clocks: advance.clocks };
-        active.runner.advance(active.done, stretch, &mut step);
+        active.runner.advance(active.done, stretch, &mut sink);
         if advance.done {
-            active.runner.finish(clock.wrapping_add(advance.clocks), &mut step);
+            active.runner.finish(clock.wrapping_add(advance.clocks), &mut sink);
             let goes_on = self.ahead.continues();
             self.current = Current::Nothing;
             if !goes_on {

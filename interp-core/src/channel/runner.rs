@@ -12,18 +12,54 @@ use crate::curve::line::LineWalker;
 use crate::curve::proportion::Proportion;
 use crate::curve::{Step, Walker};
 use crate::math::{sine, to_u32, to_u64};
-use crate::units::Axis;
+use crate::shaper::{Made, Shaper};
+use crate::times::{PULSE, Stretch, Times};
+use crate::train::Event;
+use crate::units::{Axis, Lattice};
 
-/// One pulse in the continuous coordinate.
-const PULSE: i64 = 1 << 16;
+/// Where steps go: the shaper and the position.
+pub(super) struct Sink<'s, O> {
+    /// Makes events of them.
+    pub(super) shaper: &'s mut Shaper,
+    /// Where they lead.
+    pub(super) position: &'s mut Lattice,
+    /// Takes the events.
+    pub(super) out: &'s mut O,
+}
 
-/// A stretch of time in clocks of the present tick, in which the path advances evenly.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub(super) struct Stretch {
-    /// When it begins.
-    pub(super) from: u32,
-    /// How long it lasts.
-    pub(super) clocks: u32,
+impl<O: FnMut(Event)> Sink<'_, O> {
+    /// One step, at a clock or as soon after as the pins allow.
+    fn step(&mut self, clock: u32, step: Step) {
+        self.shaper.step(clock, step.x, step.z, self.out);
+        self.position.x = self.position.x.wrapping_add(i32::from(step.x));
+        self.position.z = self.position.z.wrapping_add(i32::from(step.z));
+    }
+
+    /// Up to `count` steps of two kinds, as far as they can be made in a row.
+    #[inline(always)]
+    fn row(&mut self, times: &mut Times, count: u32, kinds: [Step; 2], turns: impl FnMut() -> bool) -> Made {
+        let made = self.shaper.run(times, count, kinds, turns, self.out);
+        let [straight, diagonal] = kinds;
+        let along = |straight: i8, diagonal: i8| {
+            let count = if straight != 0 { made.steps } else { made.diagonals };
+            count.cast_signed().wrapping_mul(i32::from(diagonal))
+        };
+        self.position.x = self.position.x.wrapping_add(along(straight.x, diagonal.x));
+        self.position.z = self.position.z.wrapping_add(along(straight.z, diagonal.z));
+        made
+    }
+}
+
+/// Lattice lines from `next` to `to`, `next <= to`.
+#[inline]
+fn lines(next: i64, to: i64) -> u32 {
+    to_u32(to.wrapping_sub(next).unsigned_abs() >> 16).wrapping_add(1)
+}
+
+/// The lattice line `count` further.
+#[inline]
+fn further(next: i64, count: u32) -> i64 {
+    next.wrapping_add(i64::from(count) << 16)
 }
 
 /// Runs a curve from its start to its end.
@@ -47,55 +83,26 @@ impl Runner {
         }
     }
 
-    /// Advances evenly to `length` from the start during `stretch`; `step` gets the clock and the step.
-    pub(super) fn advance(&mut self, length: u64, stretch: Stretch, step: &mut impl FnMut(u32, Step)) {
+    /// Advances evenly to `length` from the start during `stretch`; the steps go to `sink`.
+    pub(super) fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl FnMut(Event)>) {
         match self {
-            Self::Line(runner) => runner.advance(length, stretch, step),
-            Self::Arc(runner) => runner.advance(length, stretch, step),
+            Self::Line(runner) => runner.advance(length, stretch, sink),
+            Self::Arc(runner) => runner.advance(length, stretch, sink),
         }
     }
 
     /// Makes the steps that are still owed at the end of the curve.
-    pub(super) fn finish(&mut self, clock: u32, step: &mut impl FnMut(u32, Step)) {
+    pub(super) fn finish(&mut self, clock: u32, sink: &mut Sink<'_, impl FnMut(Event)>) {
         match self {
-            Self::Line(runner) => rest(&mut runner.walker, clock, step),
-            Self::Arc(runner) => rest(&mut runner.walker, clock, step),
+            Self::Line(runner) => rest(&mut runner.walker, clock, sink),
+            Self::Arc(runner) => rest(&mut runner.walker, clock, sink),
         }
     }
 }
 
-fn rest(walker: &mut impl Walker, clock: u32, step: &mut impl FnMut(u32, Step)) {
+fn rest(walker: &mut impl Walker, clock: u32, sink: &mut Sink<'_, impl FnMut(Event)>) {
     while let Some(owed) = walker.next_step() {
-        step(clock, owed);
-    }
-}
-
-/// Times at which an evenly moving coordinate passes lattice lines.
-struct Crossings {
-    /// Clock of the next crossing, 16 fraction bits.
-    time: u64,
-    /// Clocks a pulse, 16 fraction bits.
-    spacing: u64,
-}
-
-impl Crossings {
-    /// For a coordinate that goes from `from` to `to` (`to > from`) and passes `next` first.
-    #[inline]
-    fn new(from: i64, to: i64, next: i64, stretch: Stretch) -> Self {
-        let moved = to.wrapping_sub(from).unsigned_abs();
-        let spacing = (u64::from(stretch.clocks) << 32).checked_div(moved).unwrap_or(0);
-        let first = next.wrapping_sub(from).max(0).unsigned_abs();
-        // first <= moved, so the product is at most clocks << 32
-        let offset = first.wrapping_mul(spacing) >> 16;
-        Self { time: (u64::from(stretch.from) << 16).wrapping_add(offset), spacing }
-    }
-
-    #[inline]
-    fn next(&mut self) -> u32 {
-        #[expect(clippy::cast_possible_truncation, reason = "a clock of one tick, below 2^14")]
-        let clock = (self.time >> 16) as u32;
-        self.time = self.time.wrapping_add(self.spacing);
-        clock
+        sink.step(clock, owed);
     }
 }
 
@@ -112,14 +119,25 @@ pub(super) struct LineRunner {
 
 impl LineRunner {
     #[inline]
-    fn advance(&mut self, length: u64, stretch: Stretch, step: &mut impl FnMut(u32, Step)) {
+    fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl FnMut(Event)>) {
         let to = self.steps.of(length).cast_signed();
         if self.next <= to {
-            let mut crossings = Crossings::new(self.at, to, self.next, stretch);
-            while self.next <= to {
-                let Some(made) = self.walker.next_step() else { break };
-                step(crossings.next(), made);
-                self.next = self.next.wrapping_add(PULSE);
+            let mut times = Times::new(self.at, to, self.next, stretch);
+            let mut due = lines(self.next, to).min(self.walker.left());
+            self.next = further(self.next, due);
+            while due > 0 {
+                let mut made = 0;
+                let kinds = self.walker.kinds();
+                self.walker.row(|row| {
+                    made = sink.row(&mut times, due, kinds, || row.turns()).steps;
+                    made
+                });
+                if made == 0 {
+                    let Some(step) = self.walker.next_step() else { break };
+                    sink.step(times.take(), step);
+                    made = 1;
+                }
+                due = due.wrapping_sub(made);
             }
         }
         self.at = to;
@@ -206,42 +224,74 @@ impl ArcRunner {
     }
 
     #[inline]
-    fn advance(&mut self, length: u64, stretch: Stretch, step: &mut impl FnMut(u32, Step)) {
+    fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl FnMut(Event)>) {
         let mut rest = stretch;
         while length >= self.zone_to {
             let clocks =
                 share(rest.clocks, self.zone_to.saturating_sub(self.reached), length.saturating_sub(self.reached));
             let part = Stretch { from: rest.from, clocks };
-            self.to(self.zone_to, part, step);
+            self.to(self.zone_to, part, sink);
             let border = part.from.wrapping_add(clocks);
             rest = Stretch { from: border, clocks: rest.clocks.wrapping_sub(clocks) };
-            self.cross(border, step);
+            self.cross(border, sink);
         }
-        self.to(length, rest, step);
+        self.to(length, rest, sink);
     }
 
     /// Advances inside the zone.
     #[inline]
-    fn to(&mut self, length: u64, stretch: Stretch, step: &mut impl FnMut(u32, Step)) {
+    fn to(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl FnMut(Event)>) {
         let to = self.coordinate(length);
         if self.next <= to {
-            let mut crossings = Crossings::new(self.at, to, self.next, stretch);
-            while self.next <= to && self.walker.in_zone() {
-                let Some(made) = self.walker.next_step() else { break };
-                step(crossings.next(), made);
-                self.next = self.next.wrapping_add(PULSE);
+            let mut times = Times::new(self.at, to, self.next, stretch);
+            while self.next <= to {
+                let mut made = self.row(lines(self.next, to), &mut times, sink);
+                if made == 0 {
+                    if !self.walker.in_zone() {
+                        break;
+                    }
+                    let Some(step) = self.walker.next_step() else { break };
+                    sink.step(times.take(), step);
+                    made = 1;
+                }
+                self.next = further(self.next, made);
             }
         }
         self.at = to;
         self.reached = length;
     }
 
+    /// Makes up to `due` steps of the octant in a row.
+    #[inline]
+    fn row(&mut self, due: u32, times: &mut Times, sink: &mut Sink<'_, impl FnMut(Event)>) -> u32 {
+        let due = due.min(self.walker.left_in_row());
+        if due == 0 {
+            return 0;
+        }
+        let kinds = self.walker.kinds();
+        let mut steps = 0;
+        if self.walker.is_narrow() {
+            self.walker.row::<i32>(|row| {
+                let made = sink.row(times, due, kinds, || row.turns());
+                steps = made.steps;
+                (made.steps, made.diagonals)
+            });
+        } else {
+            self.walker.row::<i64>(|row| {
+                let made = sink.row(times, due, kinds, || row.turns());
+                steps = made.steps;
+                (made.steps, made.diagonals)
+            });
+        }
+        steps
+    }
+
     /// Leaves the zone at its end: owed steps, then the way over a gap between the zones but for its last step.
     #[cold]
-    fn cross(&mut self, clock: u32, step: &mut impl FnMut(u32, Step)) {
+    fn cross(&mut self, clock: u32, sink: &mut Sink<'_, impl FnMut(Event)>) {
         while self.walker.in_zone() {
             let Some(owed) = self.walker.next_step() else { break };
-            step(clock, owed);
+            sink.step(clock, owed);
         }
         if !self.walker.enter_next_zone() {
             self.zone_to = u64::MAX;
@@ -249,7 +299,7 @@ impl ArcRunner {
         }
         while self.walker.gap() > 1 {
             let Some(made) = self.walker.joint_step() else { break };
-            step(clock, made);
+            sink.step(clock, made);
         }
         // the next zone's major axis is the other one, and its near end lies half its width before its middle
         let [half_x, half_z] = self.arc.timeline.half_width;

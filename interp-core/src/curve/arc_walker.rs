@@ -3,7 +3,7 @@
 //! Inside an octant the major axis steps every time and the minor axis when the half-way point between its two
 //! candidates lies on the near side of the curve. `decision` is four times `F` there, with the sign arranged so that
 //! it is not negative when the minor axis steps; a half counts upward. All sums are taken modulo 2^64 and are exact,
-//! since the true values fit.
+//! since the true values fit; where they fit 32 bits throughout an octant, rows of steps are made in 32 bits.
 //!
 //! At an octant's border the walker goes to the first point of the next octant over the joint that was prepared: no
 //! step where both octants share the point, one where they are neighbours, and over the in-between point nearest the
@@ -38,6 +38,8 @@ pub struct ArcWalker {
     /// side of the curve. Where travel leads away from the centre, `u32::MAX` less the steps back to that line. So
     /// none may be taken forward at 0 nor backward at `u32::MAX`.
     minors: u32,
+    /// Every figure of the recurrence fits 32 bits throughout the octant.
+    narrow: bool,
     /// Where the walker is.
     x: i32,
     z: i32,
@@ -62,6 +64,7 @@ impl Arc {
             straight: Step::default(),
             diagonal: Step::default(),
             minors: 0,
+            narrow: false,
             x: 0,
             z: 0,
             target: (0, 0),
@@ -224,6 +227,16 @@ impl ArcWalker {
         let outward = (sn > 0) == above;
         let room = to_u32(nearest.wrapping_sub(i64::from(minor)).unsigned_abs());
         self.minors = if outward { u32::MAX.wrapping_sub(room) } else { room };
+        // the rises change evenly, so they are largest at an end of the octant; between two tests `decision` moves by
+        // a few rises at most, so a 16th of the range leaves room enough
+        const FITS: u64 = 1 << 27;
+        let fits = |rise: i64, curve: i64| {
+            let last = rise.wrapping_add(curve.wrapping_mul(i64::from(self.steps)));
+            rise.unsigned_abs() < FITS && last.unsigned_abs() < FITS && curve.unsigned_abs() < FITS
+        };
+        self.narrow = self.decision.unsigned_abs() < FITS
+            && fits(self.major_rise, self.major_curve)
+            && fits(self.minor_rise, self.minor_curve);
     }
 
     /// One step inside the octant; the caller knows that there is one.
@@ -241,6 +254,50 @@ impl ArcWalker {
         self.decision = self.decision.wrapping_add(self.major_rise);
         self.major_rise = self.major_rise.wrapping_add(self.major_curve);
         self.shift(step)
+    }
+
+    /// Steps that can be made in a row: those of the octant, as long as the minor axis has lines left to step to.
+    #[inline]
+    pub(crate) fn left_in_row(&self) -> u32 {
+        if (self.x, self.z) == self.target { self.steps.wrapping_sub(self.done).min(self.minors) } else { 0 }
+    }
+
+    /// Whether a row's recurrence fits 32 bits.
+    #[inline]
+    pub(crate) const fn is_narrow(&self) -> bool {
+        self.narrow
+    }
+
+    /// The octant's two kinds of step: the major axis alone, and both.
+    #[inline]
+    pub(crate) const fn kinds(&self) -> [Step; 2] {
+        [self.straight, self.diagonal]
+    }
+
+    /// Makes steps in a row, at most [`left_in_row`](Self::left_in_row): `make` asks the recurrence for each whether it
+    /// is diagonal, and tells how many it made and how many of these were diagonal.
+    #[inline(always)]
+    pub(crate) fn row<W: Word>(&mut self, make: impl FnOnce(&mut ArcRow<W>) -> (u32, u32)) {
+        let mut row = ArcRow {
+            decision: W::from_wide(self.decision),
+            major_rise: W::from_wide(self.major_rise),
+            major_curve: W::from_wide(self.major_curve),
+            minor_rise: W::from_wide(self.minor_rise),
+            minor_curve: W::from_wide(self.minor_curve),
+        };
+        let (steps, diagonals) = make(&mut row);
+        self.decision = row.decision.wide();
+        self.major_rise = row.major_rise.wide();
+        self.minor_rise = row.minor_rise.wide();
+        self.done = self.done.wrapping_add(steps);
+        self.minors = self.minors.wrapping_sub(diagonals);
+        let along = |straight: i8, diagonal: i8| {
+            let count = if straight != 0 { steps } else { diagonals };
+            count.cast_signed().wrapping_mul(i32::from(diagonal))
+        };
+        self.x = self.x.wrapping_add(along(self.straight.x, self.diagonal.x));
+        self.z = self.z.wrapping_add(along(self.straight.z, self.diagonal.z));
+        self.target = (self.x, self.z);
     }
 
     /// Undoes one step inside the octant.
@@ -262,6 +319,81 @@ impl ArcWalker {
             self.straight
         };
         self.shift(Step { x: step.x.wrapping_neg(), z: step.z.wrapping_neg() })
+    }
+}
+
+/// A word that the recurrence is computed in, modulo its size.
+pub(crate) trait Word: Copy {
+    /// The low bits.
+    fn from_wide(value: i64) -> Self;
+    /// The value, whose true one fits.
+    fn wide(self) -> i64;
+    /// The sum.
+    fn plus(self, other: Self) -> Self;
+    /// Whether it is 0 or above.
+    fn is_reached(self) -> bool;
+}
+
+impl Word for i64 {
+    #[inline(always)]
+    fn from_wide(value: i64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn wide(self) -> i64 {
+        self
+    }
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        self.wrapping_add(other)
+    }
+    #[inline(always)]
+    fn is_reached(self) -> bool {
+        self >= 0
+    }
+}
+
+impl Word for i32 {
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the caller knows that it fits")]
+    fn from_wide(value: i64) -> Self {
+        value as Self
+    }
+    #[inline(always)]
+    fn wide(self) -> i64 {
+        i64::from(self)
+    }
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        self.wrapping_add(other)
+    }
+    #[inline(always)]
+    fn is_reached(self) -> bool {
+        self >= 0
+    }
+}
+
+/// The recurrence of an [`ArcWalker`] during a row of steps.
+pub(crate) struct ArcRow<W> {
+    decision: W,
+    major_rise: W,
+    major_curve: W,
+    minor_rise: W,
+    minor_curve: W,
+}
+
+impl<W: Word> ArcRow<W> {
+    /// Whether the next step is diagonal.
+    #[inline(always)]
+    pub(crate) fn turns(&mut self) -> bool {
+        let turns = self.decision.is_reached();
+        if turns {
+            self.decision = self.decision.plus(self.minor_rise);
+            self.minor_rise = self.minor_rise.plus(self.minor_curve);
+        }
+        self.decision = self.decision.plus(self.major_rise);
+        self.major_rise = self.major_rise.plus(self.major_curve);
+        turns
     }
 }
 

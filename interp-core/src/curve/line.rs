@@ -57,6 +57,49 @@ impl Line {
     }
 }
 
+impl LineWalker {
+    /// Steps that remain.
+    #[inline]
+    pub(crate) const fn left(&self) -> u32 {
+        self.steps.wrapping_sub(self.done)
+    }
+
+    /// The two kinds of step: the major axis alone, and both.
+    #[inline]
+    pub(crate) const fn kinds(&self) -> [Step; 2] {
+        [self.straight, self.diagonal]
+    }
+
+    /// Makes steps in a row: `make` asks the recurrence for each whether it is diagonal, and tells how many it made.
+    #[inline(always)]
+    pub(crate) fn row(&mut self, make: impl FnOnce(&mut LineRow) -> u32) {
+        let mut row = LineRow { remainder: self.remainder, rise: self.rise, turn: self.turn };
+        self.done = self.done.wrapping_add(make(&mut row));
+        self.remainder = row.remainder;
+    }
+}
+
+/// The recurrence of a [`LineWalker`] during a row of steps.
+pub(crate) struct LineRow {
+    remainder: u32,
+    rise: u32,
+    turn: u32,
+}
+
+impl LineRow {
+    /// Whether the next step is diagonal.
+    #[inline(always)]
+    pub(crate) const fn turns(&mut self) -> bool {
+        // every figure is below 2^30 and a remainder below 2^30: sums stay under 2^31
+        self.remainder = self.remainder.wrapping_add(self.rise);
+        let turns = self.remainder >= self.turn;
+        if turns {
+            self.remainder = self.remainder.wrapping_sub(self.turn);
+        }
+        turns
+    }
+}
+
 /// Walks a [`Line`].
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct LineWalker {
@@ -76,15 +119,12 @@ impl Walker for LineWalker {
         if self.done >= self.steps {
             return None;
         }
-        // every figure is below 2^30 and a remainder below 2^30: sums stay under 2^31
-        self.done = self.done.wrapping_add(1);
-        self.remainder = self.remainder.wrapping_add(self.rise);
-        if self.remainder >= self.turn {
-            self.remainder = self.remainder.wrapping_sub(self.turn);
-            Some(self.diagonal)
-        } else {
-            Some(self.straight)
-        }
+        let mut diagonal = false;
+        self.row(|row| {
+            diagonal = row.turns();
+            1
+        });
+        Some(if diagonal { self.diagonal } else { self.straight })
     }
 
     fn previous_step(&mut self) -> Option<Step> {
