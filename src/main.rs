@@ -34,7 +34,6 @@ mod app {
     use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
     use heapless::spsc::{Consumer, Producer, Queue};
     use interp_core::block::Block;
-    use interp_core::train::Levels;
     use interp_core::units::Lattice;
     use stm32f4xx_hal::pac::Interrupt;
 
@@ -47,9 +46,15 @@ mod app {
 
     static BELL: Bell = Bell::new();
     static STATUS: Status = Status::new();
-    static UNDERRUNS: AtomicU32 = AtomicU32::new(0);
     static LATE: AtomicU32 = AtomicU32::new(0);
     static HUNGRY: AtomicBool = AtomicBool::new(true);
+
+    /// What `pulse` needs, side by side, so that few instructions find it.
+    struct Steps {
+        player: Player<'static>,
+        timer: StepTimer,
+        port: StepPort,
+    }
 
     #[shared]
     struct Shared {}
@@ -58,9 +63,7 @@ mod app {
     struct Local {
         drives: Drives,
         emergency: EmergencyInput,
-        timer: StepTimer,
-        port: StepPort,
-        player: Player<'static>,
+        steps: Steps,
         foreground: Foreground<'static>,
         train: Writer<'static>,
         bench: Bench,
@@ -105,9 +108,7 @@ mod app {
             Local {
                 drives,
                 emergency,
-                timer,
-                port,
-                player,
+                steps: Steps { player, timer, port },
                 foreground,
                 train,
                 bench,
@@ -131,17 +132,14 @@ mod app {
     }
 
     /// Plays one event of the train.
-    #[task(binds = TIM5, priority = 4, local = [timer, port, player])]
+    #[task(binds = TIM5, priority = 4, local = [steps])]
     fn pulse(cx: pulse::Context) {
-        let pulse::LocalResources { timer, port, player, .. } = cx.local;
+        let Steps { player, timer, port } = cx.local.steps;
         timer.acknowledge();
-        let play = player.next_or_idle();
-        port.write(Levels::from_bits(play.levels));
-        timer.load(play.interval);
-        if play.begins {
-            UNDERRUNS.store(player.underruns(), Relaxed);
-            LATE.store(timer.late(), Relaxed);
-            rtic::pend(Interrupt::I2C3_ER);
+        let event = player.next_or_idle(|| rtic::pend(Interrupt::I2C3_ER));
+        port.write(event);
+        if timer.load(event.interval()) {
+            LATE.store(LATE.load(Relaxed).saturating_add(1), Relaxed);
         }
     }
 
@@ -150,9 +148,9 @@ mod app {
     fn interpolate(cx: interpolate::Context) {
         let interpolate::LocalResources { foreground, train, bench, .. } = cx.local;
         bench.due(foreground.state(), &mut |command| foreground.obey(command));
-        let report = foreground.tick(&mut |event| train.put(event));
+        let report = foreground.tick(train);
         let faults =
-            Faults { underruns: UNDERRUNS.load(Relaxed), overruns: train.overruns(), late: LATE.load(Relaxed) };
+            Faults { underruns: train.underruns(), overruns: train.overruns(), late: LATE.load(Relaxed) };
         bench.saw(&report, faults);
         train.publish();
         STATUS.publish(&report, foreground, faults);

@@ -116,19 +116,7 @@ impl Motion {
         // keeps within that room except for what a tick rounds
         let wish = target.max(speed.saturating_sub(rise)).min(speed.saturating_add(rise));
         let slowest = speed.saturating_sub(part(self.accel, clocks).max(1));
-        let ending = match self.full_bend() {
-            None => self.brake_straight(speed, left, exit, rise),
-            Some(_) => {
-                // the speed allowed depends on how far the stretch leads, which depends on the speed: two rounds
-                let allowed = |end: Speed| {
-                    let covered = covered(speed, end, clocks);
-                    root(self.reachable(left.saturating_sub(covered), exit))
-                };
-                let first = allowed(wish).min(wish);
-                let second = allowed(first).min(wish);
-                first.wrapping_add(second.wrapping_sub(first) / 2)
-            }
-        };
+        let ending = self.ending(speed, wish, left, exit, rise, clocks);
         let end = wish.min(ending).max(slowest);
         let length = covered(speed, end, clocks);
         if length < left {
@@ -157,6 +145,32 @@ impl Motion {
         let mean = u64::from(speed).wrapping_add(u64::from(at_end));
         let time = left.saturating_mul(2 * TICK).checked_div(mean).unwrap_or(0);
         Advance { length: left, clocks: to_u32(time).min(clocks), speed: at_end, done: true }
+    }
+
+    /// The largest speed at the end of a stretch from which the exit can still be met, where that is below `wish`; else
+    /// any from `wish` on.
+    fn ending(&self, speed: Speed, wish: Speed, left: u64, exit: u64, rise: u32, clocks: u32) -> Speed {
+        match self.full_bend() {
+            None => self.brake_straight(speed, left, exit, rise),
+            Some(_) => {
+                // the speed allowed depends on how far the stretch leads, which depends on the speed: two rounds
+                let allowed = |end: Speed| {
+                    let covered = covered(speed, end, clocks);
+                    root(self.reachable(left.saturating_sub(covered), exit))
+                };
+                let first = allowed(wish).min(wish);
+                if first == wish {
+                    return wish;
+                }
+                let second = allowed(first).min(wish);
+                first.wrapping_add(second.wrapping_sub(first) / 2)
+            }
+        }
+    }
+
+    /// Whether a whole tick at an even `speed`, `left` before the end, leaves room to brake to standstill there.
+    pub fn can_keep(&self, speed: Speed, left: u64) -> bool {
+        left > u64::from(speed) && self.ending(speed, speed, left, 0, self.accel.max(1), TICK_CLOCKS) >= speed
     }
 
     /// The end speed of a stretch in which the speed changes by at most `rise`, after which constant braking still

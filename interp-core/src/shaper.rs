@@ -15,7 +15,7 @@
 use crate::config::{Machine, TICK_CLOCKS};
 use crate::curve::Step;
 use crate::times::{FRACTION, Times};
-use crate::train::{Event, Levels};
+use crate::train::{Event, Levels, Train};
 use crate::units::Axis;
 
 /// A time that never comes.
@@ -167,7 +167,7 @@ impl Shaper {
         count: u32,
         [straight, diagonal]: [Step; 2],
         mut turns: impl FnMut() -> bool,
-        out: &mut impl FnMut(Event),
+        out: &mut impl Train,
     ) -> Made {
         let mut made = Made { steps: 0, diagonals: 0 };
         let Some(row) = self.row(times, count, diagonal, out) else { return made };
@@ -182,12 +182,10 @@ impl Shaper {
         let mut fell = self.began.cast_unsigned();
         let (mut at, mut diagonal_at) = (0, 0);
         let (mut time, spacing) = (times.time, times.spacing);
-        let mut left = row.count;
-        while left != 0 {
-            left = left.wrapping_sub(1);
+        out.put_pairs(row.count, || {
             at = time >> FRACTION;
             time = time.wrapping_add(spacing);
-            out(Event::from_word(low | at.wrapping_sub(fell)));
+            let before = Event::from_word(low | at.wrapping_sub(fell));
             fell = at.wrapping_add(row.width);
             let event = if turns() {
                 diagonal_at = at;
@@ -196,8 +194,8 @@ impl Shaper {
             } else {
                 straight_up
             };
-            out(event);
-        }
+            [before, event]
+        });
         times.time = time;
         self.began = fell.cast_signed();
         made.steps = row.count;
@@ -217,7 +215,7 @@ impl Shaper {
 
     /// How many of the `count` steps due at `times` touch no rule.
     #[inline(always)]
-    fn row(&mut self, times: &Times, count: u32, diagonal: Step, out: &mut impl FnMut(Event)) -> Option<Row> {
+    fn row(&mut self, times: &Times, count: u32, diagonal: Step, out: &mut impl Train) -> Option<Row> {
         let first = times.clock();
         let mut directions = self.levels;
         if diagonal.x != 0 {
@@ -246,7 +244,7 @@ impl Shaper {
     /// Adds a step at `due` clocks from the start of the tick, or as soon after it as the rules allow. Each of `x`
     /// and `z` is -1, 0 or 1.
     #[inline]
-    pub fn step(&mut self, due: u32, x: i8, z: i8, out: &mut impl FnMut(Event)) {
+    pub fn step(&mut self, due: u32, x: i8, z: i8, out: &mut impl Train) {
         let mut due = clamped(due);
         if x != 0 {
             due = self.prepare(Axis::X, x > 0, due, out);
@@ -274,11 +272,11 @@ impl Shaper {
     }
 
     /// Ends the tick: what is left of it is handed out, and times count from the next.
-    pub fn end_tick(&mut self, out: &mut impl FnMut(Event)) {
+    pub fn end_tick(&mut self, out: &mut impl Train) {
         let border = BORDER;
         self.fall_until(border.wrapping_add(self.event_min).wrapping_sub(1), out);
         if self.began < border {
-            out(Event::new(self.levels, clocks(border.wrapping_sub(self.began))));
+            out.put(Event::new(self.levels, clocks(border.wrapping_sub(self.began))));
             self.began = border;
         }
         self.began = self.began.wrapping_sub(border);
@@ -300,7 +298,7 @@ impl Shaper {
 
     /// Earliest rise of `axis` at or after `due`, its pin low and the direction set.
     #[inline]
-    fn prepare(&mut self, axis: Axis, plus: bool, due: i32, out: &mut impl FnMut(Event)) -> i32 {
+    fn prepare(&mut self, axis: Axis, plus: bool, due: i32, out: &mut impl Train) -> i32 {
         // the pin must have fallen, and when it did tells when it may rise: a fall may have had to wait
         while self.pins(axis).fall != NEVER {
             self.fall_next(out);
@@ -312,7 +310,7 @@ impl Shaper {
     }
 
     /// Lowers what is due next.
-    fn fall_next(&mut self, out: &mut impl FnMut(Event)) {
+    fn fall_next(&mut self, out: &mut impl Train) {
         let at = self.placed(self.x.fall.min(self.z.fall));
         let levels = self.lowered(at);
         self.put(at, levels, out);
@@ -320,7 +318,7 @@ impl Shaper {
 
     /// Changes the direction of an axis as early as its last pulse allows.
     #[cold]
-    fn turn(&mut self, axis: Axis, plus: bool, out: &mut impl FnMut(Event)) {
+    fn turn(&mut self, axis: Axis, plus: bool, out: &mut impl Train) {
         let due = self.pins(axis).free.max(self.began.wrapping_add(self.event_min));
         self.fall_until(due, out);
         let at = self.placed(due);
@@ -332,7 +330,7 @@ impl Shaper {
 
     /// Lowers pins that are due long enough before `until` for another event then.
     #[inline]
-    fn fall_until(&mut self, until: i32, out: &mut impl FnMut(Event)) {
+    fn fall_until(&mut self, until: i32, out: &mut impl Train) {
         loop {
             let next = self.x.fall.min(self.z.fall);
             if next == NEVER {
@@ -381,13 +379,13 @@ impl Shaper {
 
     /// Begins an event, handing out the one before it.
     #[inline]
-    fn put(&mut self, at: i32, levels: Levels, out: &mut impl FnMut(Event)) {
+    fn put(&mut self, at: i32, levels: Levels, out: &mut impl Train) {
         let border = BORDER;
         if self.began < border && at > border {
-            out(Event::new(self.levels, clocks(border.wrapping_sub(self.began))));
+            out.put(Event::new(self.levels, clocks(border.wrapping_sub(self.began))));
             self.began = border;
         }
-        out(Event::new(self.levels, clocks(at.wrapping_sub(self.began))));
+        out.put(Event::new(self.levels, clocks(at.wrapping_sub(self.began))));
         self.levels = levels;
         self.began = at;
     }

@@ -88,6 +88,29 @@ impl Event {
     }
 }
 
+/// Takes the events of a train, one after the other. Every closure that takes an event does.
+pub trait Train {
+    /// Takes the next event.
+    fn put(&mut self, event: Event);
+
+    /// Takes `pairs` pairs of events, asking `next` for each. A queue may find their places at once.
+    #[inline(always)]
+    fn put_pairs(&mut self, pairs: u32, mut next: impl FnMut() -> [Event; 2]) {
+        for _ in 0..pairs {
+            let [first, second] = next();
+            self.put(first);
+            self.put(second);
+        }
+    }
+}
+
+impl<F: FnMut(Event)> Train for F {
+    #[inline]
+    fn put(&mut self, event: Event) {
+        self(event);
+    }
+}
+
 /// FNV-1a, 64 bits, over the words of a train, little endian.
 ///
 /// Source: G. Fowler, L. C. Noll, K.-P. Vo, the FNV non-cryptographic hash algorithm.

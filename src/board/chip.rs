@@ -20,7 +20,6 @@ pub(crate) const LATHE_PINS: u32 = 0xF;
 /// and the late event counted.
 pub(crate) struct StepTimer {
     timer: TIM5,
-    late: u32,
 }
 
 impl StepTimer {
@@ -36,7 +35,7 @@ impl StepTimer {
         timer.sr().write(|w| w.uif().clear_bit());
         timer.dier().write(|w| w.uie().set_bit());
         timer.cr1().write(|w| w.urs().set_bit().cen().set_bit());
-        Self { timer, late: 0 }
+        Self { timer }
     }
 
     /// Takes the interrupt.
@@ -45,27 +44,23 @@ impl StepTimer {
         self.timer.sr().write(|w| w.uif().clear_bit());
     }
 
-    /// Lets the present event last `clocks`.
+    /// Lets the present event last `clocks`. True where it is over already: then the next one begins at once.
     #[inline]
-    pub(crate) fn load(&mut self, clocks: u32) {
+    pub(crate) fn load(&mut self, clocks: u32) -> bool {
         self.timer.arr().write(|w| w.arr().set(clocks.wrapping_sub(1)));
-        if self.timer.cnt().read().cnt().bits() >= clocks {
+        let late = self.timer.cnt().read().cnt().bits() >= clocks;
+        if late {
             self.hurry();
         }
+        late
     }
 
     /// The event is over already.
     #[cold]
     fn hurry(&mut self) {
-        self.late = self.late.saturating_add(1);
         // with URS set this raises no interrupt, so it is pended by hand
         self.timer.egr().write(|w| w.ug().set_bit());
         cortex_m::peripheral::NVIC::pend(stm32f4xx_hal::pac::Interrupt::TIM5);
-    }
-
-    /// How often an event was over before it began.
-    pub(crate) const fn late(&self) -> u32 {
-        self.late
     }
 }
 

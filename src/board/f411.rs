@@ -16,7 +16,7 @@
 //! Clock: 96 MHz, not 100: the timers run at 96 MHz, and 96 / 8 = 12.
 
 use handcnc::background::parameters::Parameters;
-use interp_core::train::Levels;
+use interp_core::train::Event;
 use stm32f4xx_hal::gpio::{Output, Pin, PinState, Speed};
 use stm32f4xx_hal::pac::{self, Peripherals};
 use stm32f4xx_hal::prelude::*;
@@ -75,8 +75,8 @@ type StepPins = (Pin<'B', 12, Output>, Pin<'B', 13, Output>, Pin<'B', 14, Output
 impl StepPort {
     /// Sets all four pins in one write.
     #[inline]
-    pub(crate) fn write(&mut self, levels: Levels) {
-        let word = chip::set_and_clear(levels, FIRST);
+    pub(crate) fn write(&mut self, event: Event) {
+        let word = chip::set_and_clear(event.levels(), FIRST);
         // SAFETY: BSRR changes only the pins that it names, and those are owned here; the write is atomic.
         #[allow(unsafe_code, reason = "the HAL sets pins one by one")]
         unsafe { &*pac::GPIOB::ptr() }.bsrr().write(|w| unsafe { w.bits(word) });

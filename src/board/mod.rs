@@ -11,6 +11,7 @@
 mod bell;
 mod fault;
 mod link_port;
+mod registers;
 
 #[cfg(not(feature = "board-qemu"))]
 mod chip;

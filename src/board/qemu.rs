@@ -2,11 +2,11 @@
 //! without ports, clock tree, TIM1 and DMA. For tests.
 //!
 //! QEMU's `-d unimp` logs each write to what it lacks, in order and with its value. So this board's port is GPIOE's
-//! ODR, and each interval goes to TIM1's ARR, too: the log has a pair of port and interval for every event that the
-//! core really played. TIM1's CCR1 gets a mark when the lathe's state changes, its CCR2 one when
-//! the train ran empty or lost events.
+//! ODR, and each interval goes to GPIOF's ODR, too: the log has a pair of port and interval for every event that the
+//! core really played. TIM1's CCR1 gets a mark when the lathe's state changes, its CCR2 one when the train ran empty
+//! or lost events.
 //!
-//! TIM5 counts nanoseconds here: an interval is rounded down to one. Its model adds whatever a write of PSC, CNT or
+//! TIM5 counts nanoseconds here; an interval is 0.002 % short, so that it costs few instructions. Its model adds whatever a write of PSC, CNT or
 //! EGR leaves behind to every later alarm, so those are never written; writing ARR restarts the wait.
 //!
 //! The words of semihosting's command line (`-semihosting-config arg=..`) are `name=value` for a parameter and
@@ -18,11 +18,12 @@ use handcnc::foreground::Command;
 use handcnc::foreground::rehearsal::Rehearsal;
 use interp_core::channel::{Report, State};
 use interp_core::config::TICK_CLOCKS;
-use interp_core::train::Levels;
-use stm32f4xx_hal::pac::{GPIOE, Peripherals, TIM1, TIM5};
+use interp_core::train::Event;
+use stm32f4xx_hal::pac::{self, GPIOE, GPIOF, Peripherals, TIM1, TIM5};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Config;
 
+use super::registers::Registers;
 use super::{Board, link_port};
 
 /// Sets the board up.
@@ -38,8 +39,8 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
         }
     });
     Board {
-        timer: StepTimer::start(dp.TIM5, dp.TIM1),
-        port: StepPort(dp.GPIOE),
+        timer: StepTimer::start(dp.TIM5),
+        port: StepPort::new(dp.GPIOE, dp.GPIOF),
         drives: Drives,
         emergency: EmergencyInput,
         receiver,
@@ -51,16 +52,17 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
 
 /// The train's clock.
 pub(crate) struct StepTimer {
-    timer: TIM5,
-    shadow: TIM1,
+    timer: Registers<pac::tim5::RegisterBlock>,
 }
 
 impl StepTimer {
-    fn start(timer: TIM5, shadow: TIM1) -> Self {
+    fn start(timer: TIM5) -> Self {
         timer.dier().write(|w| w.uie().set_bit());
         timer.arr().write(|w| w.arr().set(nanoseconds(TICK_CLOCKS)));
         timer.cr1().write(|w| w.cen().set_bit());
-        Self { timer, shadow }
+        // SAFETY: the timer's only owner gives it up here, for ever.
+        #[allow(unsafe_code, reason = "the registers for ever")]
+        Self { timer: unsafe { Registers::new(TIM5::ptr()) } }
     }
 
     /// Takes the interrupt.
@@ -69,36 +71,44 @@ impl StepTimer {
         self.timer.sr().write(|w| w.uif().clear_bit());
     }
 
-    /// Lets the present event last `clocks`.
+    /// Lets the present event last `clocks`. The emulated handler is never late.
     #[inline]
-    pub(crate) fn load(&mut self, clocks: u32) {
-        // SAFETY: any value may stand there; the emulator only logs it.
-        #[allow(unsafe_code, reason = "a register that the emulator lacks")]
-        self.shadow.arr().write(|w| unsafe { w.bits(clocks) });
+    pub(crate) fn load(&mut self, clocks: u32) -> bool {
         self.timer.arr().write(|w| w.arr().set(nanoseconds(clocks)));
-    }
-
-    /// The emulated handler is never late.
-    pub(crate) const fn late(&self) -> u32 {
-        0
+        false
     }
 }
 
-/// Clocks of 12 MHz in nanoseconds, rounded down.
+/// Clocks of 12 MHz in nanoseconds, 83.332 for 83.333.
 const fn nanoseconds(clocks: u32) -> u32 {
-    clocks.wrapping_mul(250) / 3
+    clocks.wrapping_mul(21_333) >> 8
 }
 
-/// The step port.
-pub(crate) struct StepPort(GPIOE);
+/// The step port, and beside it the shadow of the intervals.
+pub(crate) struct StepPort {
+    port: Registers<pac::gpioe::RegisterBlock>,
+    shadow: Registers<pac::gpioe::RegisterBlock>,
+}
 
 impl StepPort {
-    /// Writes all levels.
+    /// Takes the port and the one behind it.
+    fn new(_: GPIOE, _: GPIOF) -> Self {
+        // SAFETY: the ports' only owners give them up here, for ever.
+        #[allow(unsafe_code, reason = "the registers for ever")]
+        unsafe {
+            Self { port: Registers::new(GPIOE::ptr()), shadow: Registers::new(GPIOF::ptr()) }
+        }
+    }
+
+    /// Writes all levels, and for the log the interval.
     #[inline]
-    pub(crate) fn write(&mut self, levels: Levels) {
+    pub(crate) fn write(&mut self, event: Event) {
         // SAFETY: any value may stand there; the emulator only logs it.
-        #[allow(unsafe_code, reason = "a register that the emulator lacks")]
-        self.0.odr().write(|w| unsafe { w.bits(u32::from(levels.bits())) });
+        #[allow(unsafe_code, reason = "registers that the emulator lacks")]
+        unsafe {
+            self.port.odr().write(|w| w.bits(u32::from(event.levels().bits())));
+            self.shadow.odr().write(|w| w.bits(event.interval()));
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use heapless::spsc::Consumer;
 use interp_core::block::Block;
 use interp_core::channel::{Channel, Report, State};
 use interp_core::config::Machine;
-use interp_core::train::Event;
+use interp_core::train::Train;
 use interp_core::units::Lattice;
 
 /// Blocks that a lathe looks ahead. The same on every board and on the desktop, since the pulses depend on it.
@@ -59,7 +59,7 @@ impl<'q> Foreground<'q> {
     }
 
     /// Makes one tick of train.
-    pub fn tick(&mut self, out: &mut impl FnMut(Event)) -> Report {
+    pub fn tick(&mut self, out: &mut impl Train) -> Report {
         while let Some(command) = self.commands.dequeue() {
             self.obey(command);
         }

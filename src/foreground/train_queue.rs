@@ -5,24 +5,27 @@
 //! the order of a program's own writes is all the order that is needed. The writer publishes a tick at once: it is
 //! played whole or not yet.
 //!
-//! A word is the event with `FIRST` set on the first event of a tick: the player asks for the next tick when it
-//! begins one, so a tick is always ready behind the one being played.
+//! Each tick is led by a header, a word that no event can be; behind the last tick published stands an empty word.
+//! The player so learns from the word itself that a tick begins or that there is none, and the writer publishes a
+//! tick by putting the header in the place of the empty word, last of all. At a header the player asks for the next
+//! tick, so a tick is always ready behind the one being played.
 
 use core::sync::atomic::{AtomicU32, Ordering, compiler_fence};
 
 use interp_core::config::TICK_CLOCKS;
-use interp_core::train::{Event, Levels};
+use interp_core::train::{Event, Levels, Train};
 
-/// Places in the queue; one stays empty. Two ticks of events 2 us apart, and some to spare.
+/// Places in the queue; three stay empty. Two ticks of events 2 us apart, and some to spare.
 pub const TRAIN_QUEUE: usize = 1024;
 
 #[expect(clippy::cast_possible_truncation, reason = "1024")]
 const MASK: u32 = TRAIN_QUEUE as u32 - 1;
 const _: () = assert!(TRAIN_QUEUE.is_power_of_two());
 
-/// Marks the first event of a tick: the interval's top bit, which no interval uses.
-const FIRST: u32 = 1 << 15;
-const _: () = assert!(TICK_CLOCKS < FIRST);
+/// Nothing here yet.
+const EMPTY: u32 = 0;
+/// A tick begins behind this word. No event has an interval of 0.
+const HEADER: u32 = 1 << 16;
 
 /// Steps of all lathes; the other levels are directions.
 const STEPS: u16 = 0x5555;
@@ -31,10 +34,10 @@ const STEPS: u16 = 0x5555;
 #[derive(Debug)]
 pub struct TrainQueue {
     words: [AtomicU32; TRAIN_QUEUE],
-    /// Events played, modulo 2^32.
+    /// Words played up to the tick being played, modulo 2^32.
     played: AtomicU32,
-    /// Events written, modulo 2^32.
-    written: AtomicU32,
+    /// How often the player found nothing.
+    underruns: AtomicU32,
 }
 
 impl Default for TrainQueue {
@@ -47,20 +50,28 @@ impl TrainQueue {
     /// An empty queue.
     pub const fn new() -> Self {
         Self {
-            words: [const { AtomicU32::new(0) }; TRAIN_QUEUE],
+            words: [const { AtomicU32::new(EMPTY) }; TRAIN_QUEUE],
             played: AtomicU32::new(0),
-            written: AtomicU32::new(0),
+            underruns: AtomicU32::new(0),
         }
     }
 
     /// The two sides.
     pub const fn split(&mut self) -> (Writer<'_>, Player<'_>) {
         let queue = &*self;
-        (Writer { queue, next: 0, room: 0, first: FIRST, overruns: 0 }, Player { queue, underruns: 0 })
+        (Writer { queue, header: 0, next: 1, limit: MASK.wrapping_sub(1), overruns: 0 }, Player { queue, next: 0 })
     }
 
-    fn word(&self, at: u32) -> Option<&AtomicU32> {
-        self.words.get((at & MASK) as usize)
+    #[inline]
+    fn get(&self, at: u32) -> u32 {
+        self.words.get((at & MASK) as usize).map_or(EMPTY, |place| place.load(Ordering::Relaxed))
+    }
+
+    #[inline]
+    fn set(&self, at: u32, word: u32) {
+        if let Some(place) = self.words.get((at & MASK) as usize) {
+            place.store(word, Ordering::Relaxed);
+        }
     }
 }
 
@@ -68,95 +79,142 @@ impl TrainQueue {
 #[derive(Debug)]
 pub struct Writer<'q> {
     queue: &'q TrainQueue,
+    /// Where the present tick's header will stand.
+    header: u32,
+    /// Where the next event will.
     next: u32,
-    /// Places known to be free.
-    room: u32,
-    first: u32,
+    /// The first place known to be taken: an empty word still goes before it, and the last event played.
+    limit: u32,
     overruns: u32,
 }
 
 impl Writer<'_> {
-    /// Adds an event of the present tick. Where there is no place for it, it is lost and counted.
-    #[inline]
-    pub fn put(&mut self, event: Event) {
-        if self.room == 0 {
-            self.room = MASK.wrapping_sub(self.next.wrapping_sub(self.queue.played.load(Ordering::Relaxed)));
-            if self.room == 0 {
-                self.overruns = self.overruns.saturating_add(1);
-                return;
-            }
+    /// Looks for more places. False where there are none.
+    #[cold]
+    fn more(&mut self) -> bool {
+        self.look();
+        let room = self.next != self.limit;
+        if !room {
+            self.overruns = self.overruns.saturating_add(1);
         }
-        if let Some(place) = self.queue.word(self.next) {
-            place.store(event.word() | self.first, Ordering::Relaxed);
-        }
-        self.first = 0;
-        self.next = self.next.wrapping_add(1);
-        self.room = self.room.wrapping_sub(1);
+        room
     }
 
     /// Ends the tick and hands it over.
     #[inline]
     pub fn publish(&mut self) {
+        self.queue.set(self.next, EMPTY);
         compiler_fence(Ordering::Release);
-        self.queue.written.store(self.next, Ordering::Relaxed);
-        self.first = FIRST;
+        self.queue.set(self.header, HEADER);
+        self.header = self.next;
+        self.next = self.next.wrapping_add(1);
+        self.look();
+    }
+
+    /// Looks how far the player has come.
+    #[inline]
+    fn look(&mut self) {
+        let taken = self.queue.played.load(Ordering::Relaxed).wrapping_add(MASK).wrapping_sub(1);
+        // a queue that is full has its limit behind the header, not behind `next`
+        self.limit = if taken == self.header { self.next } else { taken };
     }
 
     /// Events lost for want of a place: the settings ask for more than the board's queue holds.
     pub const fn overruns(&self) -> u32 {
         self.overruns
     }
+
+    /// How often the player found nothing: the interpolator came too late.
+    pub fn underruns(&self) -> u32 {
+        self.queue.underruns.load(Ordering::Relaxed)
+    }
 }
 
-/// What is to be played now.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Play {
-    /// Levels to write.
-    pub levels: u16,
-    /// Clocks to wait.
-    pub interval: u32,
-    /// A tick begins here: the next one is wanted.
-    pub begins: bool,
+impl Train for Writer<'_> {
+    /// Adds an event of the present tick. Where there is no place for it, it is lost and counted.
+    #[inline]
+    fn put(&mut self, event: Event) {
+        if self.next == self.limit && !self.more() {
+            return;
+        }
+        self.queue.set(self.next, event.word());
+        self.next = self.next.wrapping_add(1);
+    }
+
+    #[inline(always)]
+    fn put_pairs(&mut self, pairs: u32, mut next: impl FnMut() -> [Event; 2]) {
+        let mut left = pairs;
+        while left > 0 {
+            let first = self.next & MASK;
+            let free = self.limit.wrapping_sub(self.next);
+            let count = left.min(free / 2).min(MASK.wrapping_add(1).wrapping_sub(first) / 2);
+            let places = self.queue.words.get(first as usize..first.wrapping_add(count.wrapping_mul(2)) as usize);
+            let (places, _) = places.unwrap_or_default().as_chunks::<2>();
+            if places.is_empty() {
+                // the last place before the end, or no place at all
+                let [before, after] = next();
+                self.put(before);
+                self.put(after);
+                left = left.wrapping_sub(1);
+                continue;
+            }
+            for [before, after] in places {
+                let events = next();
+                before.store(events[0].word(), Ordering::Relaxed);
+                after.store(events[1].word(), Ordering::Relaxed);
+            }
+            self.next = self.next.wrapping_add(count.wrapping_mul(2));
+            left = left.wrapping_sub(count);
+        }
+    }
 }
 
 /// The step timer's side.
 #[derive(Debug)]
 pub struct Player<'q> {
     queue: &'q TrainQueue,
-    underruns: u32,
+    /// What is played next.
+    next: u32,
 }
 
 impl Player<'_> {
-    /// The next event, or an idle tick where there is none: steps low, directions as they are.
+    /// The next event, or an idle tick where there is none: steps low, directions as they are. `begins` is called
+    /// where it is the first of a tick: the next one is wanted.
     #[inline]
-    pub fn next_or_idle(&mut self) -> Play {
-        let next = self.queue.played.load(Ordering::Relaxed);
-        if next == self.queue.written.load(Ordering::Relaxed) {
-            return self.idle(next);
+    pub fn next_or_idle(&mut self, begins: impl FnOnce()) -> Event {
+        let word = self.queue.get(self.next);
+        if word & 0xFFFF == 0 {
+            begins();
+            return self.begin(word);
+        }
+        self.next = self.next.wrapping_add(1);
+        Event::from_word(word)
+    }
+
+    /// The first event of the tick that `word` leads.
+    #[cold]
+    #[inline(never)]
+    fn begin(&mut self, word: u32) -> Event {
+        self.queue.played.store(self.next, Ordering::Relaxed);
+        if word == EMPTY {
+            return self.idle();
         }
         compiler_fence(Ordering::Acquire);
-        let word = self.queue.word(next).map_or(0, |place| place.load(Ordering::Relaxed));
-        self.queue.played.store(next.wrapping_add(1), Ordering::Relaxed);
-        Play { levels: levels(word), interval: word & !FIRST & 0xFFFF, begins: word & FIRST != 0 }
+        self.next = self.next.wrapping_add(2);
+        Event::from_word(self.queue.get(self.next.wrapping_sub(1)))
     }
 
     #[cold]
-    fn idle(&mut self, next: u32) -> Play {
-        self.underruns = self.underruns.saturating_add(1);
+    fn idle(&mut self) -> Event {
+        // keeps the optimizer from taking the player apart into single words, whose addresses then cost more
+        // instructions in every event than the words do
+        core::hint::black_box(&mut *self);
+        let underruns = &self.queue.underruns;
+        underruns.store(underruns.load(Ordering::Relaxed).saturating_add(1), Ordering::Relaxed);
         // the last event played is still in its place, which the writer leaves free
-        let last = self.queue.word(next.wrapping_sub(1)).map_or(0, |place| place.load(Ordering::Relaxed));
-        let levels = Levels::from_bits(levels(last) & !STEPS).bits();
-        Play { levels, interval: TICK_CLOCKS, begins: true }
+        let last = Event::from_word(self.queue.get(self.next.wrapping_sub(1))).levels();
+        Event::new(Levels::from_bits(last.bits() & !STEPS), TICK_CLOCKS)
     }
-
-    /// How often the queue was found empty.
-    pub const fn underruns(&self) -> u32 {
-        self.underruns
-    }
-}
-
-const fn levels(word: u32) -> u16 {
-    (word >> 16) as u16
 }
 
 #[cfg(test)]
@@ -167,17 +225,24 @@ mod tests {
         Event::new(Levels::from_bits(levels), interval)
     }
 
+    /// What is played next, and whether a tick begins.
+    fn played(player: &mut Player<'_>) -> (u16, u32, bool) {
+        let mut begins = false;
+        let event = player.next_or_idle(|| begins = true);
+        (event.levels().bits(), event.interval(), begins)
+    }
+
     #[test]
     fn a_tick_is_played_only_once_it_is_published() {
         let mut queue = TrainQueue::new();
         let (mut writer, mut player) = queue.split();
         writer.put(event(3, 24));
-        assert_eq!(player.next_or_idle(), Play { levels: 0, interval: TICK_CLOCKS, begins: true });
+        assert_eq!(played(&mut player), (0, TICK_CLOCKS, true));
         writer.put(event(2, 11_976));
         writer.publish();
-        assert_eq!(player.next_or_idle(), Play { levels: 3, interval: 24, begins: true });
-        assert_eq!(player.next_or_idle(), Play { levels: 2, interval: 11_976, begins: false });
-        assert_eq!(player.underruns(), 1);
+        assert_eq!(played(&mut player), (3, 24, true));
+        assert_eq!(played(&mut player), (2, 11_976, false));
+        assert_eq!(writer.underruns(), 1);
     }
 
     #[test]
@@ -186,26 +251,79 @@ mod tests {
         let (mut writer, mut player) = queue.split();
         writer.put(event(0xFFFF, 12_000));
         writer.publish();
-        assert_eq!(player.next_or_idle().levels, 0xFFFF);
-        assert_eq!(player.next_or_idle().levels, 0xAAAA);
+        assert_eq!(played(&mut player), (0xFFFF, 12_000, true));
+        assert_eq!(played(&mut player), (0xAAAA, TICK_CLOCKS, true));
         writer.put(event(0, 12_000));
-        assert_eq!(player.next_or_idle().levels, 0xAAAA);
+        assert_eq!(played(&mut player), (0xAAAA, TICK_CLOCKS, true));
+        assert_eq!(writer.underruns(), 2);
     }
 
     #[test]
     fn what_finds_no_place_is_counted_and_nothing_else_is_lost() {
         let mut queue = TrainQueue::new();
         let (mut writer, mut player) = queue.split();
-        for _ in 0..3 {
+        for round in 0..3 {
             for n in 0..=1023_u16 {
                 writer.put(event(n, 1 + u32::from(n)));
             }
             writer.publish();
-            for n in 0..1023_u16 {
-                let play = player.next_or_idle();
-                assert_eq!((play.levels, play.interval, play.begins), (n, 1 + u32::from(n), n == 0));
+            // a header, an empty word and the last event played take a place each
+            for n in 0..1021_u16 {
+                assert_eq!(played(&mut player), (n, 1 + u32::from(n), n == 0), "round {round}");
+            }
+            assert_eq!(played(&mut player), (1020 & 0xAAAA, TICK_CLOCKS, true));
+        }
+        assert_eq!((writer.overruns(), writer.underruns()), (9, 3));
+    }
+
+    /// Pairs come out as single events would, over the queue's end and where there is no place for all.
+    #[test]
+    fn pairs_are_two_events_each() {
+        for odd in 0..2_u16 {
+            let (mut queue, mut twin) = (TrainQueue::new(), TrainQueue::new());
+            let ((mut writer, mut player), (mut single, mut other)) = (queue.split(), twin.split());
+            for tick in 0..40_u16 {
+                let pairs = 97 + 30 * (tick % 15);
+                for n in 0..odd {
+                    writer.put(event(n, 7));
+                    single.put(event(n, 7));
+                }
+                let mut n = 0;
+                writer.put_pairs(u32::from(pairs), || {
+                    n += 2;
+                    [event(n, 1), event(n + 1, 2)]
+                });
+                for n in 1..=pairs {
+                    single.put(event(2 * n, 1));
+                    single.put(event(2 * n + 1, 2));
+                }
+                writer.publish();
+                single.publish();
+                if tick % 2 == 1 {
+                    for _ in 0..1100 {
+                        assert_eq!(played(&mut player), played(&mut other), "tick {tick}");
+                    }
+                }
+            }
+            assert_eq!(writer.overruns(), single.overruns());
+            assert!(writer.overruns() > 0);
+        }
+    }
+
+    /// Ticks of every length up to the queue's, written and played in turn, come out whole and in order.
+    #[test]
+    fn ticks_of_every_length_come_out_as_they_went_in() {
+        let mut queue = TrainQueue::new();
+        let (mut writer, mut player) = queue.split();
+        for length in (1..=500_u16).chain((1..=500).rev()) {
+            for n in 0..length {
+                writer.put(event(n, 1 + u32::from(length)));
+            }
+            writer.publish();
+            for n in 0..length {
+                assert_eq!(played(&mut player), (n, 1 + u32::from(length), n == 0));
             }
         }
-        assert_eq!((writer.overruns(), player.underruns()), (3, 0));
+        assert_eq!((writer.overruns(), writer.underruns()), (0, 0));
     }
 }

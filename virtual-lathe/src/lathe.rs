@@ -14,6 +14,7 @@ use heapless::spsc::Queue;
 use interp_core::block::Block;
 use interp_core::channel::{Report, State};
 use interp_core::config::Machine;
+use interp_core::train::Event;
 
 use crate::program::{Lines, Program};
 
@@ -180,7 +181,7 @@ pub fn run(
             command_in.enqueue(*command).map_err(|_| full())?;
         }
         events.clear();
-        let report = foreground.tick(&mut |event| events.push(event.word()));
+        let report = foreground.tick(&mut |event: Event| events.push(event.word()));
         if report.in_cycle {
             observer.tick(&events, &report)?;
             cycle += 1;
@@ -204,7 +205,7 @@ pub fn run(
 fn finish(foreground: &mut Foreground<'_>, observer: &mut impl Observer, events: &mut Vec<u32>) -> io::Result<()> {
     for _ in 0..2 {
         events.clear();
-        let report = foreground.tick(&mut |event| events.push(event.word()));
+        let report = foreground.tick(&mut |event: Event| events.push(event.word()));
         observer.tick(events, &report)?;
     }
     if foreground.starved() > 0 {

@@ -108,7 +108,7 @@ fn run(listener: &TcpListener, fast: bool, parameters: Parameters, machine: &Mac
             due = now;
         }
         due += TICK;
-        let report = foreground.tick(&mut |event| cycle.event(event));
+        let report = foreground.tick(&mut |event: Event| cycle.event(event));
         cycle.tick(&report);
         background.snapshot = Snapshot {
             state: report.state,

@@ -198,7 +198,7 @@ enum Fault {
 }
 
 const PORT: &str = "GPIOE: unimplemented device write (size 4, offset 0x014, value 0x";
-const INTERVAL: &str = "timer[1]: unimplemented device write (size 4, offset 0x02c, value 0x";
+const INTERVAL: &str = "GPIOF: unimplemented device write (size 4, offset 0x014, value 0x";
 const STATE: &str = "timer[1]: unimplemented device write (size 4, offset 0x034, value 0x";
 const FAULTS: &str = "timer[1]: unimplemented device write (size 4, offset 0x038, value 0x";
 

@@ -4,16 +4,19 @@
 //! are taken only at a tick's start and only as many as fit, so as long as the source keeps up the train does not
 //! depend on when they arrived; should the source lag, the plan ends in standstill and the lag is counted.
 
+mod cruise;
 pub mod lookahead;
 mod runner;
 
 use crate::block::{Block, Motion, Output, Speed, Work};
 use crate::config::{Machine, TICK_CLOCKS};
+use crate::governor::Advance;
 use crate::math::root;
 use crate::shaper::Shaper;
 use crate::times::Stretch;
-use crate::train::Event;
+use crate::train::Train;
 use crate::units::Lattice;
+use cruise::Cruise;
 use lookahead::{Lookahead, pace};
 use runner::{Runner, Sink};
 
@@ -66,6 +69,10 @@ struct Active {
     runner: Runner,
     /// Length covered.
     done: u64,
+    /// Its speed under the override of `paced_at` percent.
+    pace: Speed,
+    paced_at: u16,
+    cruise: Cruise,
 }
 
 /// What is being executed.
@@ -200,7 +207,7 @@ impl<const N: usize> Channel<N> {
     }
 
     /// Makes one tick: takes blocks from `source`, gives events to `out`.
-    pub fn tick(&mut self, source: &mut impl FnMut() -> Option<Block>, out: &mut impl FnMut(Event)) -> Report {
+    pub fn tick(&mut self, source: &mut impl FnMut() -> Option<Block>, out: &mut impl Train) -> Report {
         let in_cycle = matches!(self.state, State::Running | State::Holding | State::Stopped | State::Resetting);
         self.take(source);
         let mut output = None;
@@ -249,7 +256,7 @@ impl<const N: usize> Channel<N> {
     }
 
     /// Executes for one tick.
-    fn run(&mut self, out: &mut impl FnMut(Event)) -> Option<Output> {
+    fn run(&mut self, out: &mut impl Train) -> Option<Output> {
         let mut clock = 0_u32;
         while clock < TICK_CLOCKS && matches!(self.state, State::Running | State::Holding | State::Resetting) {
             let left = TICK_CLOCKS.wrapping_sub(clock);
@@ -315,14 +322,18 @@ impl<const N: usize> Channel<N> {
             self.speed.min(motion.joint).min(motion.limit)
         };
         let runner = Runner::new(&motion.curve, motion.length);
-        self.current = Current::Motion(Active { motion, runner, done: 0 });
+        let (pace, paced_at) = (pace(&motion, self.feed_override), self.feed_override);
+        self.current = Current::Motion(Active { motion, runner, done: 0, pace, paced_at, cruise: Cruise::new() });
     }
 
     /// Advances the motion from `clock` on; the clocks used, or `None` where it stands for the rest of the tick.
-    fn go(&mut self, clock: u32, out: &mut impl FnMut(Event)) -> Option<u32> {
+    fn go(&mut self, clock: u32, out: &mut impl Train) -> Option<u32> {
         let holding = !matches!(self.state, State::Running);
         let Current::Motion(active) = &mut self.current else { return None };
-        let target = if holding { 0 } else { pace(&active.motion, self.feed_override) };
+        if active.paced_at != self.feed_override {
+            (active.pace, active.paced_at) = (pace(&active.motion, self.feed_override), self.feed_override);
+        }
+        let target = if holding { 0 } else { active.pace };
         if self.speed == 0 {
             if target == 0 {
                 return None;
@@ -333,9 +344,18 @@ impl<const N: usize> Channel<N> {
             return None;
         }
         let left = active.motion.length.saturating_sub(active.done);
-        let exit = self.ahead.exit(&active.motion);
-        let budget = TICK_CLOCKS.wrapping_sub(clock);
-        let advance = active.motion.advance(self.speed, left, exit, target, budget);
+        let steady = self.speed == target && clock == 0;
+        let advance = if steady && active.cruise.holds(target, left) {
+            Advance { length: u64::from(target), clocks: TICK_CLOCKS, speed: target, done: false }
+        } else {
+            let exit = self.ahead.exit(&active.motion);
+            let budget = TICK_CLOCKS.wrapping_sub(clock);
+            let advance = active.motion.advance(self.speed, left, exit, target, budget);
+            if steady && advance.speed == target && !advance.done {
+                active.cruise.learn(&active.motion, target, left);
+            }
+            advance
+        };
         active.done = active.done.saturating_add(advance.length);
         self.speed = advance.speed;
         let mut sink = Sink { shaper: &mut self.shaper, position: &mut self.position, out };

@@ -14,7 +14,7 @@ use crate::curve::{Step, Walker};
 use crate::math::{sine, to_u32, to_u64};
 use crate::shaper::{Made, Shaper};
 use crate::times::{PULSE, Stretch, Times};
-use crate::train::Event;
+use crate::train::Train;
 use crate::units::{Axis, Lattice};
 
 /// Where steps go: the shaper and the position.
@@ -27,7 +27,7 @@ pub(super) struct Sink<'s, O> {
     pub(super) out: &'s mut O,
 }
 
-impl<O: FnMut(Event)> Sink<'_, O> {
+impl<O: Train> Sink<'_, O> {
     /// One step, at a clock or as soon after as the pins allow.
     fn step(&mut self, clock: u32, step: Step) {
         self.shaper.step(clock, step.x, step.z, self.out);
@@ -84,7 +84,7 @@ impl Runner {
     }
 
     /// Advances evenly to `length` from the start during `stretch`; the steps go to `sink`.
-    pub(super) fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl FnMut(Event)>) {
+    pub(super) fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl Train>) {
         match self {
             Self::Line(runner) => runner.advance(length, stretch, sink),
             Self::Arc(runner) => runner.advance(length, stretch, sink),
@@ -92,7 +92,7 @@ impl Runner {
     }
 
     /// Makes the steps that are still owed at the end of the curve.
-    pub(super) fn finish(&mut self, clock: u32, sink: &mut Sink<'_, impl FnMut(Event)>) {
+    pub(super) fn finish(&mut self, clock: u32, sink: &mut Sink<'_, impl Train>) {
         match self {
             Self::Line(runner) => rest(&mut runner.walker, clock, sink),
             Self::Arc(runner) => rest(&mut runner.walker, clock, sink),
@@ -100,7 +100,7 @@ impl Runner {
     }
 }
 
-fn rest(walker: &mut impl Walker, clock: u32, sink: &mut Sink<'_, impl FnMut(Event)>) {
+fn rest(walker: &mut impl Walker, clock: u32, sink: &mut Sink<'_, impl Train>) {
     while let Some(owed) = walker.next_step() {
         sink.step(clock, owed);
     }
@@ -119,7 +119,7 @@ pub(super) struct LineRunner {
 
 impl LineRunner {
     #[inline]
-    fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl FnMut(Event)>) {
+    fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl Train>) {
         let to = self.steps.of(length).cast_signed();
         if self.next <= to {
             let mut times = Times::new(self.at, to, self.next, stretch);
@@ -224,7 +224,7 @@ impl ArcRunner {
     }
 
     #[inline]
-    fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl FnMut(Event)>) {
+    fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl Train>) {
         let mut rest = stretch;
         while length >= self.zone_to {
             let clocks =
@@ -240,7 +240,7 @@ impl ArcRunner {
 
     /// Advances inside the zone.
     #[inline]
-    fn to(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl FnMut(Event)>) {
+    fn to(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl Train>) {
         let to = self.coordinate(length);
         if self.next <= to {
             let mut times = Times::new(self.at, to, self.next, stretch);
@@ -263,7 +263,7 @@ impl ArcRunner {
 
     /// Makes up to `due` steps of the octant in a row.
     #[inline]
-    fn row(&mut self, due: u32, times: &mut Times, sink: &mut Sink<'_, impl FnMut(Event)>) -> u32 {
+    fn row(&mut self, due: u32, times: &mut Times, sink: &mut Sink<'_, impl Train>) -> u32 {
         let due = due.min(self.walker.left_in_row());
         if due == 0 {
             return 0;
@@ -288,7 +288,7 @@ impl ArcRunner {
 
     /// Leaves the zone at its end: owed steps, then the way over a gap between the zones but for its last step.
     #[cold]
-    fn cross(&mut self, clock: u32, sink: &mut Sink<'_, impl FnMut(Event)>) {
+    fn cross(&mut self, clock: u32, sink: &mut Sink<'_, impl Train>) {
         while self.walker.in_zone() {
             let Some(owed) = self.walker.next_step() else { break };
             sink.step(clock, owed);

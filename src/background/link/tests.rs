@@ -95,7 +95,7 @@ impl Bench {
     fn tick(&mut self) {
         self.work();
         let mut events = Vec::new();
-        let report = self.foreground.tick(&mut |event| events.push(event));
+        let report = self.foreground.tick(&mut |event: Event| events.push(event));
         let before = self.pulses;
         events.iter().for_each(|event| self.play(*event));
         if report.in_cycle {
