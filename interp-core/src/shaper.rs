@@ -13,7 +13,7 @@
 //! at once and makes them in a short loop, to the same events.
 
 use crate::config::{Machine, TICK_CLOCKS};
-use crate::curve::Step;
+use crate::curve::strides::Strides;
 use crate::times::{FRACTION, Times};
 use crate::train::{Event, Levels, Train};
 use crate::units::Axis;
@@ -26,7 +26,7 @@ const NEVER: i32 = i32::MAX;
 const BORDER: i32 = TICK_CLOCKS as i32;
 
 /// Clocks as the shaper holds them; 0.7 s, far more than any width, is the most. Times of a tick are then below 2^25
-/// in magnitude but for [`NEVER`], which nothing is added to, and [`LONG_AGO`], so no sum leaves 32 bits.
+/// in magnitude but for [`NEVER`], which nothing is added to, so no sum leaves 32 bits.
 const fn clamped(clocks: u32) -> i32 {
     const MOST: u32 = 1 << 23;
     #[expect(clippy::cast_possible_wrap, reason = "at most 2^23")]
@@ -49,9 +49,6 @@ struct Pins {
     free: i32,
 }
 
-/// Long before any tick.
-const LONG_AGO: i32 = -(1 << 28);
-
 impl Pins {
     const fn new(width: u32, space: u32, setup: u32, hold: u32) -> Self {
         Self {
@@ -60,8 +57,8 @@ impl Pins {
             setup: clamped(setup),
             hold: clamped(hold),
             fall: NEVER,
-            ready: LONG_AGO,
-            free: LONG_AGO,
+            ready: 0,
+            free: 0,
         }
     }
 
@@ -74,20 +71,16 @@ impl Pins {
     /// The same figures seen from the next tick.
     const fn next_tick(&mut self) {
         if self.fall != NEVER {
-            self.fall = earlier(self.fall);
+            self.fall = self.fall.wrapping_sub(BORDER);
         }
-        self.ready = earlier(self.ready);
-        self.free = earlier(self.free);
+        // nothing is asked of a time before the tick
+        self.ready = larger(self.ready.wrapping_sub(BORDER), 0);
+        self.free = larger(self.free.wrapping_sub(BORDER), 0);
     }
 }
 
 const fn larger(a: i32, b: i32) -> i32 {
     if a > b { a } else { b }
-}
-
-const fn earlier(time: i32) -> i32 {
-    let moved = time.wrapping_sub(BORDER);
-    if moved < LONG_AGO { LONG_AGO } else { moved }
 }
 
 /// What [`Shaper::run`] made.
@@ -153,8 +146,7 @@ impl Shaper {
         self.began.wrapping_sub(BORDER)
     }
 
-    /// Makes up to `count` steps that come evenly: each is `straight`, or `diagonal` (which moves the same axis and the
-    /// other one) where `turns` says so. Makes none, or fewer, where a step touches a rule: such a step is for
+    /// Makes up to `count` steps that come evenly: each is straight, or diagonal where `turns` says so. Makes none, or fewer, where a step touches a rule: such a step is for
     /// [`step`](Self::step), to which all others come out the same.
     ///
     /// Inside a row no rule is touched: pins are low and directions set; the first step is not before either axis is
@@ -165,18 +157,15 @@ impl Shaper {
         &mut self,
         times: &mut Times,
         count: u32,
-        [straight, diagonal]: [Step; 2],
+        strides: &Strides,
         mut turns: impl FnMut() -> bool,
         out: &mut impl Train,
     ) -> Made {
         let mut made = Made { steps: 0, diagonals: 0 };
-        let Some(row) = self.row(times, count, diagonal, out) else { return made };
+        let Some(row) = self.row(times, count, strides, out) else { return made };
         let low = u32::from(self.levels.bits()) << 16;
-        let up = |step: Step| {
-            let x = if step.x != 0 { Levels::LOW.with_step(Axis::X, true).bits() } else { 0 };
-            let z = if step.z != 0 { Levels::LOW.with_step(Axis::Z, true).bits() } else { 0 };
-            Event::from_word(low | u32::from(x | z) << 16 | row.width)
-        };
+        let [straight, diagonal] = strides.raised;
+        let up = |raised: Levels| Event::from_word(low | u32::from(raised.bits()) << 16 | row.width);
         let (straight_up, diagonal_up) = (up(straight), up(diagonal));
         // when the pins fell last, and when the last diagonal step came
         let mut fell = self.began.cast_unsigned();
@@ -200,31 +189,21 @@ impl Shaper {
         self.began = fell.cast_signed();
         made.steps = row.count;
         let width = row.width.cast_signed();
-        if straight.x != 0 {
-            self.x.made(at.cast_signed(), width);
-        } else if made.diagonals != 0 && diagonal.x != 0 {
-            self.x.made(diagonal_at.cast_signed(), width);
-        }
-        if straight.z != 0 {
-            self.z.made(at.cast_signed(), width);
-        } else if made.diagonals != 0 && diagonal.z != 0 {
-            self.z.made(diagonal_at.cast_signed(), width);
+        for (pins, axis) in [(&mut self.x, Axis::X), (&mut self.z, Axis::Z)] {
+            if straight.step(axis) {
+                pins.made(at.cast_signed(), width);
+            } else if made.diagonals != 0 && diagonal.step(axis) {
+                pins.made(diagonal_at.cast_signed(), width);
+            }
         }
         made
     }
 
     /// How many of the `count` steps due at `times` touch no rule.
     #[inline(always)]
-    fn row(&mut self, times: &Times, count: u32, diagonal: Step, out: &mut impl Train) -> Option<Row> {
+    fn row(&mut self, times: &Times, count: u32, strides: &Strides, out: &mut impl Train) -> Option<Row> {
         let first = times.clock();
-        let mut directions = self.levels;
-        if diagonal.x != 0 {
-            directions = directions.with_plus(Axis::X, diagonal.x > 0);
-        }
-        if diagonal.z != 0 {
-            directions = directions.with_plus(Axis::Z, diagonal.z > 0);
-        }
-        if times.spacing_clocks() < self.quiet || directions != self.levels {
+        if times.spacing_clocks() < self.quiet || !strides.agree(self.levels) {
             return None;
         }
         // what `step` would do first, too

@@ -32,7 +32,7 @@ impl Times {
     /// `next` (`next <= to`) first, then every pulse. Rounded down.
     #[inline]
     pub fn new(from: i64, to: i64, next: i64, stretch: Stretch) -> Self {
-        let moved = to.wrapping_sub(from).unsigned_abs();
+        let moved = to.wrapping_sub(from).cast_unsigned();
         let first = next.wrapping_sub(from).max(0).unsigned_abs();
         let begin = stretch.from << FRACTION;
         match u32::try_from(moved) {
@@ -54,10 +54,15 @@ impl Times {
     /// Less than one pulse in the stretch, or hundreds.
     #[cold]
     fn far(begin: u32, moved: u64, first: u64, clocks: u32) -> Self {
-        let whole = u128::from(clocks) << FRACTION;
-        let ratio = |part: u128| part.checked_div(u128::from(moved)).map_or(u32::MAX, |r| u32::try_from(r).unwrap_or(u32::MAX));
-        let offset = ratio(whole.wrapping_mul(u128::from(first))).min(to_u32(u64::from(clocks) << FRACTION));
-        Self { time: begin.wrapping_add(offset), spacing: ratio(whole << 16) }
+        // 2^32 in 64 bits and more than 2^46 pulses do not occur; cut off, they only move steps within the tick
+        let whole = u64::from(clocks) << FRACTION;
+        let ratio = |dividend: u64| dividend.checked_div(moved).map_or(u32::MAX, to_u32);
+        let offset = if moved < 1 << 16 {
+            ratio(whole.wrapping_mul(first))
+        } else {
+            to_u32(first.wrapping_mul(u64::from(ratio(whole << 16))) >> 16)
+        };
+        Self { time: begin.wrapping_add(offset.min(to_u32(whole))), spacing: ratio(whole << 16) }
     }
 
     /// Clock of the next one.

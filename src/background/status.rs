@@ -3,6 +3,7 @@
 use super::link::Snapshot;
 use crate::foreground::published::Published;
 use crate::foreground::{Foreground, state_word, word_state};
+use core::sync::atomic::Ordering::Relaxed;
 use interp_core::channel::Report;
 use interp_core::units::Lattice;
 
@@ -30,17 +31,17 @@ impl Status {
     /// Publishes what a tick made. From the interpolator only.
     pub fn publish(&self, report: &Report, foreground: &Foreground<'_>, faults: Faults) {
         let position = foreground.position();
-        self.0.publish(&[
-            state_word(report.state),
-            position.x.cast_unsigned(),
-            position.z.cast_unsigned(),
-            report.speed,
-            report.line,
-            u32::from(foreground.feed_override()),
-            faults.underruns,
-            faults.overruns,
-            faults.late,
-        ]);
+        self.0.publish(|[state, x, z, speed, line, feed_override, underruns, overruns, late]| {
+            state.store(state_word(report.state), Relaxed);
+            x.store(position.x.cast_unsigned(), Relaxed);
+            z.store(position.z.cast_unsigned(), Relaxed);
+            speed.store(report.speed, Relaxed);
+            line.store(report.line, Relaxed);
+            feed_override.store(u32::from(foreground.feed_override()), Relaxed);
+            underruns.store(faults.underruns, Relaxed);
+            overruns.store(faults.overruns, Relaxed);
+            late.store(faults.late, Relaxed);
+        });
     }
 
     /// What was published last.

@@ -41,10 +41,11 @@ pub enum Command {
 }
 
 /// The foreground of one lathe.
+#[repr(C)]
 pub struct Foreground<'q> {
-    channel: Channel<LOOKAHEAD>,
     blocks: Consumer<'q, Block>,
     commands: Consumer<'q, Command>,
+    channel: Channel<LOOKAHEAD>,
 }
 
 impl<'q> Foreground<'q> {

@@ -25,14 +25,13 @@ impl<const N: usize> Published<N> {
         Self { words: [const { AtomicU32::new(0) }; N], writes: AtomicU32::new(0) }
     }
 
-    /// Publishes all words. To be called from one task only, of higher priority than any reader.
-    pub fn publish(&self, words: &[u32; N]) {
+    /// Publishes all words, which `write` stores. To be called from one task only, of higher priority than any reader.
+    #[inline(always)]
+    pub fn publish(&self, write: impl FnOnce(&[AtomicU32; N])) {
         let writes = self.writes.load(Ordering::Relaxed);
         self.writes.store(writes.wrapping_add(1), Ordering::Relaxed);
         compiler_fence(Ordering::SeqCst);
-        for (place, word) in self.words.iter().zip(words) {
-            place.store(*word, Ordering::Relaxed);
-        }
+        write(&self.words);
     }
 
     /// The words as published last, all of one write.
@@ -66,11 +65,12 @@ mod tests {
     fn a_reader_preempted_anywhere_gets_words_of_one_write() {
         for at in 0..6 {
             let published = Published::<3>::new();
-            published.publish(&[1, 1, 1]);
+            let write = |value| published.publish(|words| words.iter().for_each(|word| word.store(value, Ordering::Relaxed)));
+            write(1);
             let mut calls = 0;
             let read = published.read_through(|| {
                 if calls == at {
-                    published.publish(&[2, 2, 2]);
+                    write(2);
                 }
                 calls += 1;
             });

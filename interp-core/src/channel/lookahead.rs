@@ -21,12 +21,13 @@ struct Planned {
 
 /// The blocks to come, at most `N`.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Lookahead<const N: usize> {
-    blocks: Deque<Planned, N>,
     /// How many at the back have not been planned.
     fresh: usize,
     /// Percent of the programmed feed, planned with.
     feed_override: u16,
+    blocks: Deque<Planned, N>,
 }
 
 /// Speed of a motion under an override.

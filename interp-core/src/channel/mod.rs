@@ -86,25 +86,27 @@ enum Current {
 }
 
 /// One lathe's interpolator, with a look-ahead of `N` blocks.
+// what each tick needs stands before the blocks to come, whose size would put it out of an instruction's reach
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Channel<const N: usize> {
     state: State,
-    ahead: Lookahead<N>,
-    current: Current,
-    line: u32,
-    speed: Speed,
-    shaper: Shaper,
-    position: Lattice,
-    /// Percent, 0 to 200.
-    feed_override: u16,
     optional_stop: bool,
     /// The end block was taken: no more come.
     complete: bool,
+    /// Percent, 0 to 200.
+    feed_override: u16,
+    line: u32,
+    speed: Speed,
     /// Speed below which any axis may start or stop at once.
     rest: Speed,
     starved: u32,
     /// Ticks of filling since the last block came.
     waited: u32,
+    position: Lattice,
+    shaper: Shaper,
+    current: Current,
+    ahead: Lookahead<N>,
 }
 
 impl<const N: usize> Channel<N> {

@@ -10,6 +10,7 @@ use crate::curve::arc::Arc;
 use crate::curve::arc_walker::ArcWalker;
 use crate::curve::line::LineWalker;
 use crate::curve::proportion::Proportion;
+use crate::curve::strides::Strides;
 use crate::curve::{Step, Walker};
 use crate::math::{sine, to_u32, to_u64};
 use crate::shaper::{Made, Shaper};
@@ -37,15 +38,11 @@ impl<O: Train> Sink<'_, O> {
 
     /// Up to `count` steps of two kinds, as far as they can be made in a row.
     #[inline(always)]
-    fn row(&mut self, times: &mut Times, count: u32, kinds: [Step; 2], turns: impl FnMut() -> bool) -> Made {
-        let made = self.shaper.run(times, count, kinds, turns, self.out);
-        let [straight, diagonal] = kinds;
-        let along = |straight: i8, diagonal: i8| {
-            let count = if straight != 0 { made.steps } else { made.diagonals };
-            count.cast_signed().wrapping_mul(i32::from(diagonal))
-        };
-        self.position.x = self.position.x.wrapping_add(along(straight.x, diagonal.x));
-        self.position.z = self.position.z.wrapping_add(along(straight.z, diagonal.z));
+    fn row(&mut self, times: &mut Times, count: u32, strides: &Strides, turns: impl FnMut() -> bool) -> Made {
+        let made = self.shaper.run(times, count, strides, turns, self.out);
+        let (x, z) = strides.lead(made.steps, made.diagonals);
+        self.position.x = self.position.x.wrapping_add(x);
+        self.position.z = self.position.z.wrapping_add(z);
         made
     }
 }
@@ -53,7 +50,9 @@ impl<O: Train> Sink<'_, O> {
 /// Lattice lines from `next` to `to`, `next <= to`.
 #[inline]
 fn lines(next: i64, to: i64) -> u32 {
-    to_u32(to.wrapping_sub(next).unsigned_abs() >> 16).wrapping_add(1)
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a curve has less than 2^30 steps")]
+    let count = (to.wrapping_sub(next) >> 16) as u32;
+    count.wrapping_add(1)
 }
 
 /// The lattice line `count` further.
@@ -127,9 +126,9 @@ impl LineRunner {
             self.next = further(self.next, due);
             while due > 0 {
                 let mut made = 0;
-                let kinds = self.walker.kinds();
+                let strides = self.walker.strides();
                 self.walker.row(|row| {
-                    made = sink.row(&mut times, due, kinds, || row.turns()).steps;
+                    made = sink.row(&mut times, due, &strides, || row.turns()).steps;
                     made
                 });
                 if made == 0 {
@@ -268,17 +267,17 @@ impl ArcRunner {
         if due == 0 {
             return 0;
         }
-        let kinds = self.walker.kinds();
+        let strides = self.walker.strides();
         let mut steps = 0;
         if self.walker.is_narrow() {
             self.walker.row::<i32>(|row| {
-                let made = sink.row(times, due, kinds, || row.turns());
+                let made = sink.row(times, due, &strides, || row.turns());
                 steps = made.steps;
                 (made.steps, made.diagonals)
             });
         } else {
             self.walker.row::<i64>(|row| {
-                let made = sink.row(times, due, kinds, || row.turns());
+                let made = sink.row(times, due, &strides, || row.turns());
                 steps = made.steps;
                 (made.steps, made.diagonals)
             });

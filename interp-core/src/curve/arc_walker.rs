@@ -10,6 +10,7 @@
 //! curve where there is a gap.
 
 use super::arc::Arc;
+use super::strides::Strides;
 use super::{Step, Walker};
 use crate::math::to_u32;
 use crate::units::Axis;
@@ -32,8 +33,7 @@ pub struct ArcWalker {
     /// Change of `decision` with a step of the minor axis, and the change of that.
     minor_rise: i64,
     minor_curve: i64,
-    straight: Step,
-    diagonal: Step,
+    strides: Strides,
     /// Steps of the minor axis up to the lattice line nearest the centre, beyond which `decision` would see the far
     /// side of the curve. Where travel leads away from the centre, `u32::MAX` less the steps back to that line. So
     /// none may be taken forward at 0 nor backward at `u32::MAX`.
@@ -61,8 +61,7 @@ impl Arc {
             major_curve: 0,
             minor_rise: 0,
             minor_curve: 0,
-            straight: Step::default(),
-            diagonal: Step::default(),
+            strides: Strides::default(),
             minors: 0,
             narrow: false,
             x: 0,
@@ -219,8 +218,8 @@ impl ArcWalker {
             .wrapping_sub(cn.wrapping_mul(sn).wrapping_mul(4));
         self.minor_rise = toward.wrapping_mul(lift);
         self.minor_curve = toward.wrapping_mul(an).wrapping_mul(8);
-        self.diagonal = Step { x: sign_x, z: sign_z };
-        self.straight = if major_x { Step { x: sign_x, z: 0 } } else { Step { x: 0, z: sign_z } };
+        let straight = if major_x { Step { x: sign_x, z: 0 } } else { Step { x: 0, z: sign_z } };
+        self.strides = Strides::new(straight, Step { x: sign_x, z: sign_z });
         let [centre_x, centre_z] = self.arc.timeline.centre;
         let centre = if major_x { centre_z } else { centre_x };
         let nearest = centre.wrapping_add(1 << 15) >> 16;
@@ -247,9 +246,9 @@ impl ArcWalker {
             self.minors = self.minors.wrapping_sub(1);
             self.decision = self.decision.wrapping_add(self.minor_rise);
             self.minor_rise = self.minor_rise.wrapping_add(self.minor_curve);
-            self.diagonal
+            self.strides.step(true)
         } else {
-            self.straight
+            self.strides.step(false)
         };
         self.decision = self.decision.wrapping_add(self.major_rise);
         self.major_rise = self.major_rise.wrapping_add(self.major_curve);
@@ -270,8 +269,8 @@ impl ArcWalker {
 
     /// The octant's two kinds of step: the major axis alone, and both.
     #[inline]
-    pub(crate) const fn kinds(&self) -> [Step; 2] {
-        [self.straight, self.diagonal]
+    pub(crate) const fn strides(&self) -> Strides {
+        self.strides
     }
 
     /// Makes steps in a row, at most [`left_in_row`](Self::left_in_row): `make` asks the recurrence for each whether it
@@ -291,12 +290,8 @@ impl ArcWalker {
         self.minor_rise = row.minor_rise.wide();
         self.done = self.done.wrapping_add(steps);
         self.minors = self.minors.wrapping_sub(diagonals);
-        let along = |straight: i8, diagonal: i8| {
-            let count = if straight != 0 { steps } else { diagonals };
-            count.cast_signed().wrapping_mul(i32::from(diagonal))
-        };
-        self.x = self.x.wrapping_add(along(self.straight.x, self.diagonal.x));
-        self.z = self.z.wrapping_add(along(self.straight.z, self.diagonal.z));
+        let (x, z) = self.strides.lead(steps, diagonals);
+        (self.x, self.z) = (self.x.wrapping_add(x), self.z.wrapping_add(z));
         self.target = (self.x, self.z);
     }
 
@@ -314,9 +309,9 @@ impl ArcWalker {
             self.decision = before;
             self.minor_rise = rise_before;
             self.minors = self.minors.wrapping_add(1);
-            self.diagonal
+            self.strides.step(true)
         } else {
-            self.straight
+            self.strides.step(false)
         };
         self.shift(Step { x: step.x.wrapping_neg(), z: step.z.wrapping_neg() })
     }

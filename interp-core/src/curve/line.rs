@@ -6,6 +6,7 @@
 //!
 //! Source: J. E. Bresenham, IBM Systems Journal 4(1), 1965; the rule for halves is this project's.
 
+use super::strides::Strides;
 use super::{Step, Walker};
 
 /// A straight line from (0, 0).
@@ -49,8 +50,7 @@ impl Line {
             remainder: first,
             rise: minor.wrapping_mul(2),
             turn: major.wrapping_mul(2),
-            straight,
-            diagonal: Step { x: sx, z: sz },
+            strides: Strides::new(straight, Step { x: sx, z: sz }),
             done: 0,
             steps: major,
         }
@@ -66,8 +66,8 @@ impl LineWalker {
 
     /// The two kinds of step: the major axis alone, and both.
     #[inline]
-    pub(crate) const fn kinds(&self) -> [Step; 2] {
-        [self.straight, self.diagonal]
+    pub(crate) const fn strides(&self) -> Strides {
+        self.strides
     }
 
     /// Makes steps in a row: `make` asks the recurrence for each whether it is diagonal, and tells how many it made.
@@ -107,8 +107,7 @@ pub struct LineWalker {
     remainder: u32,
     rise: u32,
     turn: u32,
-    straight: Step,
-    diagonal: Step,
+    strides: Strides,
     done: u32,
     steps: u32,
 }
@@ -124,7 +123,7 @@ impl Walker for LineWalker {
             diagonal = row.turns();
             1
         });
-        Some(if diagonal { self.diagonal } else { self.straight })
+        Some(self.strides.step(diagonal))
     }
 
     fn previous_step(&mut self) -> Option<Step> {
@@ -134,10 +133,10 @@ impl Walker for LineWalker {
         self.done = self.done.wrapping_sub(1);
         let step = if self.remainder >= self.rise {
             self.remainder = self.remainder.wrapping_sub(self.rise);
-            self.straight
+            self.strides.step(false)
         } else {
             self.remainder = self.remainder.wrapping_add(self.turn).wrapping_sub(self.rise);
-            self.diagonal
+            self.strides.step(true)
         };
         Some(Step { x: step.x.wrapping_neg(), z: step.z.wrapping_neg() })
     }

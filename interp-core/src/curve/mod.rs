@@ -13,6 +13,7 @@ pub mod arc_walker;
 pub mod line;
 pub mod prepare_arc;
 pub mod proportion;
+pub mod strides;
 
 /// One step of a walker: -1, 0 or 1 pulse of each axis, at least one of them not 0.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]

@@ -162,6 +162,18 @@ impl Metric {
     }
 }
 
+/// Integers in the same ratio without a common divisor.
+fn lowest(values: [i64; 4]) -> [i64; 4] {
+    let mut common = 0_u64;
+    for value in values {
+        let mut rest = value.unsigned_abs();
+        while let Some(next) = common.checked_rem(rest) {
+            (common, rest) = (rest, next);
+        }
+    }
+    values.map(|value| value.checked_div(i64::try_from(common).unwrap_or(1)).unwrap_or(value))
+}
+
 /// The conic of one arc, on the way to an [`Arc`].
 struct Preparation<'m> {
     metric: &'m Metric,
@@ -292,11 +304,13 @@ impl<'m> Preparation<'m> {
             return None;
         }
         let (timeline, turn) = self.timeline(first)?;
+        // the same curve in smaller numbers; with its centre on the lattice in very small ones, cheaper to walk
+        let [a, b, c, d] = lowest([to_i64(self.a), to_i64(self.b), to_i64(self.c), to_i64(self.d)]);
         let mut arc = Arc {
-            a: to_i64(self.a),
-            b: to_i64(self.b),
-            c: to_i64(self.c),
-            d: to_i64(self.d),
+            a,
+            b,
+            c,
+            d,
             steps: [0; MAX_PIECES],
             joints: [(0, 0); MAX_PIECES - 1],
             octant: first,
