@@ -110,6 +110,7 @@ impl Motion {
 
     /// Advances from `speed` for at most `clocks` (1 to [`TICK_CLOCKS`]), `left` before the end, toward the speed
     /// `target`, so that the end can be met at the squared speed `exit`.
+    #[inline(never)]
     pub fn advance(&self, speed: Speed, left: u64, exit: u64, target: Speed, clocks: u32) -> Advance {
         let rise = part(self.along(speed), clocks).max(1);
         // toward the target no harder than turning leaves room for; for the exit as hard as it takes, which the plan

@@ -123,14 +123,20 @@ pub const fn sine(angle: i64) -> i64 {
     // 29 fraction bits: 2.47 at most
     let x2 = product(x, x, 31);
     let mut nested = ONE_Q30;
-    nested = one_less(nested, x2, 6_882_960); // 2^30 / (12 * 13)
-    nested = one_less(nested, x2, 9_761_289); // 2^30 / (10 * 11)
+    // up to 0.8 the last two terms are below 2.2e-9 together
+    if x2 > EIGHT_TENTHS_SQUARED {
+        nested = one_less(nested, x2, 6_882_960); // 2^30 / (12 * 13)
+        nested = one_less(nested, x2, 9_761_289); // 2^30 / (10 * 11)
+    }
     nested = one_less(nested, x2, 14_913_081); // 2^30 / (8 * 9)
     nested = one_less(nested, x2, 25_565_282); // 2^30 / (6 * 7)
     nested = one_less(nested, x2, 53_687_091); // 2^30 / (4 * 5)
     nested = one_less(nested, x2, 178_956_971); // 2^30 / (2 * 3)
     product(x, nested, 30) as i64
 }
+
+/// 0.8^2 with 29 fraction bits.
+const EIGHT_TENTHS_SQUARED: i32 = 343_597_384;
 
 /// One with 30 fraction bits.
 const ONE_Q30: i32 = 1 << 30;

@@ -189,12 +189,17 @@ impl Shaper {
         self.began = fell.cast_signed();
         made.steps = row.count;
         let width = row.width.cast_signed();
-        for (pins, axis) in [(&mut self.x, Axis::X), (&mut self.z, Axis::Z)] {
-            if straight.step(axis) {
-                pins.made(at.cast_signed(), width);
-            } else if made.diagonals != 0 && diagonal.step(axis) {
-                pins.made(diagonal_at.cast_signed(), width);
-            }
+        let (straight_at, diagonal_at) = (at.cast_signed(), diagonal_at.cast_signed());
+        let any = made.diagonals != 0;
+        if straight.step(Axis::X) {
+            self.x.made(straight_at, width);
+        } else if any && diagonal.step(Axis::X) {
+            self.x.made(diagonal_at, width);
+        }
+        if straight.step(Axis::Z) {
+            self.z.made(straight_at, width);
+        } else if any && diagonal.step(Axis::Z) {
+            self.z.made(diagonal_at, width);
         }
         made
     }

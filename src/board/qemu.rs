@@ -84,20 +84,23 @@ const fn nanoseconds(clocks: u32) -> u32 {
     clocks.wrapping_mul(21_333) >> 8
 }
 
-/// The step port, and beside it the shadow of the intervals.
-pub(crate) struct StepPort {
-    port: Registers<pac::gpioe::RegisterBlock>,
-    shadow: Registers<pac::gpioe::RegisterBlock>,
+/// The step port's registers and, behind them, those of the next port, which take the intervals.
+#[repr(C)]
+struct Ports {
+    port: pac::gpioe::RegisterBlock,
+    gap: [u8; 0x400 - size_of::<pac::gpioe::RegisterBlock>()],
+    shadow: pac::gpioe::RegisterBlock,
 }
+
+/// The step port, and the shadow of the intervals.
+pub(crate) struct StepPort(Registers<Ports>);
 
 impl StepPort {
     /// Takes the port and the one behind it.
     fn new(_: GPIOE, _: GPIOF) -> Self {
-        // SAFETY: the ports' only owners give them up here, for ever.
+        // SAFETY: the ports' only owners give them up here, for ever; GPIOF lies 0x400 behind GPIOE.
         #[allow(unsafe_code, reason = "the registers for ever")]
-        unsafe {
-            Self { port: Registers::new(GPIOE::ptr()), shadow: Registers::new(GPIOF::ptr()) }
-        }
+        Self(unsafe { Registers::new(GPIOE::ptr().cast()) })
     }
 
     /// Writes all levels, and for the log the interval.
@@ -106,8 +109,8 @@ impl StepPort {
         // SAFETY: any value may stand there; the emulator only logs it.
         #[allow(unsafe_code, reason = "registers that the emulator lacks")]
         unsafe {
-            self.port.odr().write(|w| w.bits(u32::from(event.levels().bits())));
-            self.shadow.odr().write(|w| w.bits(event.interval()));
+            self.0.port.odr().write(|w| w.bits(u32::from(event.levels().bits())));
+            self.0.shadow.odr().write(|w| w.bits(event.interval()));
         }
     }
 }

@@ -85,6 +85,16 @@ enum Current {
     Dwell(u64),
 }
 
+/// What became of the block that came next.
+enum Next {
+    /// Something was begun, or is over already.
+    Goes,
+    /// Nothing comes.
+    Stands,
+    /// An output changes at the end of this tick.
+    Output(Output),
+}
+
 /// One lathe's interpolator, with a look-ahead of `N` blocks.
 // what each tick needs stands before the blocks to come, whose size would put it out of an instruction's reach
 #[derive(Clone, Debug)]
@@ -276,34 +286,44 @@ impl<const N: usize> Channel<N> {
                         self.current = Current::Nothing;
                     }
                 }
-                Current::Nothing => {
-                    // a hold brakes on over joints; it ends where the program stands anyway
-                    if !matches!(self.state, State::Running) && self.speed == 0 {
-                        break;
-                    }
-                    let Some((block, entry)) = self.ahead.pop() else {
-                        self.state = State::Filling;
-                        break;
-                    };
-                    self.line = block.line;
-                    match block.work {
-                        Work::Motion(motion) => self.begin(motion, entry),
-                        Work::Dwell(ticks) => {
-                            self.current = Current::Dwell(u64::from(ticks).wrapping_mul(u64::from(TICK_CLOCKS)));
-                        }
-                        Work::Output(output) => return Some(output),
-                        Work::Stop => self.state = State::Stopped,
-                        Work::OptionalStop if self.optional_stop => self.state = State::Stopped,
-                        Work::OptionalStop => {}
-                        Work::End => {
-                            self.state = State::Ended;
-                            self.line = 0;
-                        }
-                    }
-                }
+                Current::Nothing => match self.next_block() {
+                    Next::Goes => {}
+                    Next::Stands => break,
+                    Next::Output(output) => return Some(output),
+                },
             }
         }
         None
+    }
+
+    /// Begins what comes next.
+    // apart from `run`, so that a tick inside a block pays nothing for it
+    #[inline(never)]
+    fn next_block(&mut self) -> Next {
+        // a hold brakes on over joints; it ends where the program stands anyway
+        if !matches!(self.state, State::Running) && self.speed == 0 {
+            return Next::Stands;
+        }
+        let Some((block, entry)) = self.ahead.pop() else {
+            self.state = State::Filling;
+            return Next::Stands;
+        };
+        self.line = block.line;
+        match block.work {
+            Work::Motion(motion) => self.begin(motion, entry),
+            Work::Dwell(ticks) => {
+                self.current = Current::Dwell(u64::from(ticks).wrapping_mul(u64::from(TICK_CLOCKS)));
+            }
+            Work::Output(output) => return Next::Output(output),
+            Work::Stop => self.state = State::Stopped,
+            Work::OptionalStop if self.optional_stop => self.state = State::Stopped,
+            Work::OptionalStop => {}
+            Work::End => {
+                self.state = State::Ended;
+                self.line = 0;
+            }
+        }
+        Next::Goes
     }
 
     /// Forgets all blocks after a reset.
@@ -345,7 +365,8 @@ impl<const N: usize> Channel<N> {
             self.speed = 0;
             return None;
         }
-        let left = active.motion.length.saturating_sub(active.done);
+        // no advance leads past the end
+        let left = active.motion.length.wrapping_sub(active.done);
         let steady = self.speed == target && clock == 0;
         let advance = if steady && active.cruise.holds(target, left) {
             Advance { length: u64::from(target), clocks: TICK_CLOCKS, speed: target, done: false }
@@ -358,7 +379,7 @@ impl<const N: usize> Channel<N> {
             }
             advance
         };
-        active.done = active.done.saturating_add(advance.length);
+        active.done = active.done.wrapping_add(advance.length);
         self.speed = advance.speed;
         let mut sink = Sink { shaper: &mut self.shaper, position: &mut self.position, out };
         let stretch = Stretch { from: clock, clocks: advance.clocks };
