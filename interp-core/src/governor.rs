@@ -10,6 +10,7 @@
 
 use crate::block::{Curve, Motion, Speed};
 use crate::config::TICK_CLOCKS;
+use crate::curve::proportion::Proportion;
 use crate::math::{QUARTER_Q30, RADIAN_Q30, cosine_from_sine, root, sine, to_u32};
 
 /// Clocks of a tick.
@@ -44,65 +45,93 @@ const fn part(value: u32, clocks: u32) -> u32 {
     to_u32((value as u64).wrapping_mul(clocks as u64) / TICK)
 }
 
+/// What an arc's curvature does to the speed.
+#[derive(Copy, Clone)]
+struct Bend {
+    /// `a R`, the squared speed at which turning takes all acceleration.
+    full: u64,
+    /// `R`, nm with 12 fraction bits.
+    radius: u64,
+    /// From a length to the angle that it turns, 30 fraction bits.
+    angle: Proportion,
+}
+
+/// Sine and cosine, 30 fraction bits, of the angle whose sine is a squared speed over `a R`: the shares of the
+/// acceleration that turning takes, and leaves.
+#[derive(Copy, Clone)]
+struct Heading {
+    sine: i64,
+    cosine: i64,
+}
+
+impl Bend {
+    fn heading(&self, squared: u64) -> Heading {
+        if squared == 0 {
+            return Heading { sine: 0, cosine: RADIAN_Q30 };
+        }
+        let sine = ratio_q30(squared.min(self.full), self.full);
+        Heading { sine, cosine: cosine_from_sine(sine) }
+    }
+
+    /// `a R sin(2 s / R + asin(w_end / a R))`, at most `a R`.
+    fn reachable(&self, distance: u64, exit: Heading) -> u64 {
+        // a quarter turn of the argument is reached at s = 0.785 R
+        if distance >= self.radius {
+            return self.full;
+        }
+        let angle = self.angle.of(distance).wrapping_mul(2).cast_signed();
+        if angle >= QUARTER_Q30 {
+            return self.full;
+        }
+        let s = sine(angle);
+        let c = cosine_from_sine(s);
+        let product = |p: i64, q: i64| p.wrapping_mul(q) >> 30;
+        if product(c, exit.cosine) <= product(s, exit.sine) {
+            return self.full;
+        }
+        let sum = product(s, exit.cosine).wrapping_add(product(c, exit.sine)).clamp(0, RADIAN_Q30).unsigned_abs();
+        (self.full >> 30).wrapping_mul(sum).saturating_add((self.full & 0x3FFF_FFFF).wrapping_mul(sum) >> 30)
+    }
+}
+
 impl Motion {
-    /// `a R`, the squared speed at which an arc's curvature takes all acceleration, where that matters: `None` on
-    /// lines and on arcs so wide that turning takes less than a 64th of the acceleration at the largest speed.
-    fn full_bend(&self) -> Option<(u64, u64)> {
+    /// What an arc's curvature does, where that matters: `None` on lines and on arcs so wide that turning takes less
+    /// than a 64th of the acceleration at the largest speed.
+    #[inline]
+    fn bend(&self) -> Option<Bend> {
         let Curve::Arc(arc) = &self.curve else { return None };
         let radius = arc.radius();
-        let bend = u64::from(self.accel).saturating_mul(radius);
-        (bend >> 6 < square(self.limit)).then_some((bend, radius))
+        let full = u64::from(self.accel).saturating_mul(radius);
+        (full >> 6 < square(self.limit)).then_some(Bend { full, radius, angle: arc.timeline.angle })
+    }
+
+    /// The acceleration along the path where turning takes none, or next to none.
+    #[inline]
+    const fn straight(&self) -> u32 {
+        match self.curve {
+            Curve::Line(..) => self.accel,
+            // on wide arcs the 8192th part that turning may take at most
+            Curve::Arc(_) => self.accel.wrapping_sub(self.accel >> 12),
+        }
     }
 
     /// The largest squared speed `distance` before the end from which `exit` (squared) can be met.
     pub fn reachable(&self, distance: u64, exit: u64) -> u64 {
-        match self.full_bend() {
+        match self.bend() {
             None => {
-                // on wide arcs the 8192th part that turning may take at most
-                let accel = match self.curve {
-                    Curve::Line(..) => self.accel,
-                    Curve::Arc(_) => self.accel.wrapping_sub(self.accel >> 12),
-                };
-                let gain = distance.saturating_mul(u64::from(accel).wrapping_mul(2));
+                let gain = distance.saturating_mul(u64::from(self.straight()).wrapping_mul(2));
                 exit.saturating_add(gain).min(UNLIMITED)
             }
-            Some((bend, radius)) => {
-                // 2 s / R with 30 fraction bits; a quarter turn is reached at s = 0.785 R
-                if distance >= radius {
-                    return bend;
-                }
-                let cut = 64_u32.wrapping_sub(radius.leading_zeros()).saturating_sub(32);
-                let twice =
-                    (distance.wrapping_shr(cut) << 31).checked_div(radius.wrapping_shr(cut)).unwrap_or(u64::MAX);
-                let angle = i64::try_from(twice).unwrap_or(i64::MAX);
-                if angle >= QUARTER_Q30 {
-                    return bend;
-                }
-                let sine_exit = ratio_q30(exit.min(bend), bend);
-                let (s, c) = (sine(angle), cosine_from_sine(sine(angle)));
-                let cosine_exit = cosine_from_sine(sine_exit);
-                let product = |p: i64, q: i64| p.wrapping_mul(q) >> 30;
-                if product(c, cosine_exit) <= product(s, sine_exit) {
-                    return bend;
-                }
-                let sum = product(s, cosine_exit).wrapping_add(product(c, sine_exit)).clamp(0, RADIAN_Q30);
-                (bend >> 30)
-                    .wrapping_mul(sum.unsigned_abs())
-                    .saturating_add((bend & 0x3FFF_FFFF).wrapping_mul(sum.unsigned_abs()) >> 30)
-            }
+            Some(bend) => bend.reachable(distance, bend.heading(exit)),
         }
     }
 
     /// Acceleration left along the path at a speed.
     fn along(&self, speed: Speed) -> u32 {
-        match self.full_bend() {
-            None => match self.curve {
-                Curve::Line(..) => self.accel,
-                Curve::Arc(_) => self.accel.wrapping_sub(self.accel >> 12),
-            },
-            Some((bend, _)) => {
-                let taken = ratio_q30(square(speed).min(bend), bend);
-                let left = cosine_from_sine(taken).unsigned_abs();
+        match self.bend() {
+            None => self.straight(),
+            Some(bend) => {
+                let left = bend.heading(square(speed)).cosine.unsigned_abs();
                 to_u32(u64::from(self.accel).wrapping_mul(left) >> 30).max(self.accel >> 4).max(1)
             }
         }
@@ -151,13 +180,14 @@ impl Motion {
     /// The largest speed at the end of a stretch from which the exit can still be met, where that is below `wish`; else
     /// any from `wish` on.
     fn ending(&self, speed: Speed, wish: Speed, left: u64, exit: u64, rise: u32, clocks: u32) -> Speed {
-        match self.full_bend() {
+        match self.bend() {
             None => self.brake_straight(speed, left, exit, rise),
-            Some(_) => {
+            Some(bend) => {
                 // the speed allowed depends on how far the stretch leads, which depends on the speed: two rounds
+                let heading = bend.heading(exit);
                 let allowed = |end: Speed| {
                     let covered = covered(speed, end, clocks);
-                    root(self.reachable(left.saturating_sub(covered), exit))
+                    root(bend.reachable(left.saturating_sub(covered), heading))
                 };
                 let first = allowed(wish).min(wish);
                 if first == wish {
