@@ -4,7 +4,6 @@ use anyhow::{Result, bail};
 use feature_editor::codes::{Detector, Format, Item};
 use handcnc::background::compile::{Compiler, Finding};
 use handcnc::background::parameters::Parameters;
-use handcnc::foreground::rehearsal::Rehearsal;
 use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
 use heapless::spsc::Queue;
 use interp_core::block::{Block, Work};
@@ -13,6 +12,8 @@ use interp_core::config::Machine;
 use interp_core::train::Event;
 use interp_core::units::Lattice;
 use std::collections::VecDeque;
+
+use crate::trial::Trial;
 
 /// A program whose every line is good.
 pub(crate) struct Program {
@@ -51,14 +52,10 @@ impl Program {
 /// Where a train goes: the events of one tick. False ends the run.
 pub(crate) type Take<'a> = dyn FnMut(&[Event]) -> bool + 'a;
 
-/// Runs `program` and gives the events of each tick of its cycle.
-pub(crate) fn run(
-    program: &Program,
-    parameters: &Parameters,
-    machine: &Machine,
-    rehearsal: &mut Rehearsal,
-    take: &mut Take<'_>,
-) -> Result<()> {
+/// Runs a trial and gives the events of each tick of its cycle. No more than `most` blocks are handed over.
+pub(crate) fn run(trial: &Trial, most: usize, take: &mut Take<'_>) -> Result<()> {
+    let Trial { program, parameters, machine, rehearsal, .. } = trial;
+    let mut rehearsal = rehearsal.clone();
     let mut compiler = Compiler::new(parameters.settings(), program.format, machine);
     let start = parameters.start();
     let position = Lattice { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) };
@@ -71,8 +68,9 @@ pub(crate) fn run(
     let mut lines = program.lines.iter();
     let mut ready: VecDeque<Block> = VecDeque::new();
     let mut ended = false;
-    loop {
-        while block_in.ready() {
+    let mut left = most;
+    let ended_by = loop {
+        while left > 0 && block_in.ready() {
             while ready.is_empty() && !ended {
                 match lines.next() {
                     Some(line) => {
@@ -86,6 +84,7 @@ pub(crate) fn run(
             if block_in.enqueue(block).is_err() {
                 bail!("the queue of blocks is full");
             }
+            left -= 1;
         }
         let mut events = Vec::new();
         rehearsal.due(foreground.state(), &mut |command| foreground.obey(command));
@@ -93,12 +92,14 @@ pub(crate) fn run(
         if report.in_cycle && !take(&events) {
             return Ok(());
         }
-        if report.state == State::Ended || report.state == State::Idle {
-            break;
+        if matches!(report.state, State::Ended | State::Idle) {
+            break report.state;
         }
-    }
-    // the last pulse's falling edge may lie in the next tick
-    for _ in 0..2 {
+    };
+    // the last pulse's falling edge may lie in the next tick; then the chip idles. After a reset the link soon goes on
+    // with the rest of the program, which is no part of the cycle.
+    let behind = if ended_by == State::Ended { 20 } else { 2 };
+    for _ in 0..behind {
         let mut events = Vec::new();
         foreground.tick(&mut |event| events.push(event));
         if !take(&events) {

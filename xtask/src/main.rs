@@ -2,6 +2,7 @@
 //! What needs more than cargo: `cargo xtask --help`. `cargo xtask test` runs everything that continuous integration
 //! runs.
 
+mod compare;
 mod desktop;
 mod emulate;
 mod firmware;
@@ -13,6 +14,7 @@ mod nopanic;
 mod qemu;
 mod test;
 mod toolchain;
+mod trial;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

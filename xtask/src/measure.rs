@@ -17,11 +17,13 @@ use std::process::Command;
 use anyhow::{Context as _, Result, bail};
 use serde_json::{Map, Value, json};
 
-use crate::emulate::{self, Played, Setting};
+use crate::compare::Played;
+use crate::emulate;
 use crate::firmware::{self, Board};
 use crate::image::Image;
 use crate::qemu;
 use crate::toolchain::{Toolchain, apt};
+use crate::trial::Trial;
 
 /// `cargo xtask measure`.
 #[derive(clap::Args)]
@@ -123,8 +125,8 @@ fn measure(elf: &Path, plugin: &Path, folder: &Path, case: &Case) -> Result<Valu
         option.push_str(&format!(",h={name}:{at:x}:{:x}", at + size));
     }
     let set: Vec<String> = parameters.iter().map(|text| (*text).to_owned()).collect();
-    let setting = Setting::new(&set)?;
-    let played = emulate::play(elf, &setting, program.as_bytes(), &["-plugin".into(), option])?;
+    let trial = Trial::new(program.as_bytes(), &set)?;
+    let played = emulate::play(elf, &trial, &["-plugin".into(), option])?;
     let text = fs::read_to_string(&counts).context("the plugin wrote nothing")?;
     let of = |wanted: &str| -> Result<Vec<u64>> {
         let lines = text.lines().filter_map(|line| line.split_once(' '));

@@ -165,6 +165,22 @@ impl Sender {
         }
     }
 
+    /// Sends a command that is refused until the machine is seen idle, which it is some ticks after power-on.
+    pub(crate) fn set(&mut self, command: &str) -> Result<()> {
+        for _ in 0..1000 {
+            self.writer.write_all(format!("{command}\n").as_bytes())?;
+            loop {
+                match &*self.line()? {
+                    "ok" => return Ok(()),
+                    "error:8" => break,
+                    refused if refused.starts_with("error") => bail!("the image answers {command} with `{refused}`"),
+                    _ => {}
+                }
+            }
+        }
+        bail!("the image is never idle for {command}")
+    }
+
     /// Sends a line as soon as it fits.
     pub(crate) fn send(&mut self, number: u32, line: &[u8]) -> Result<()> {
         let length = line.len() + 1;

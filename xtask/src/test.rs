@@ -5,22 +5,8 @@ use std::time::Instant;
 
 use crate::links;
 
-/// Programs, and how they are set, whose pulses on the emulated chip are compared with the desktop's.
-const EMULATED: [&[&str]; 2] = [
-    &["demo", ARCS, SHORT, "tests/on-target/programs/mixed.nc"],
-    &[
-        ARCS,
-        SHORT,
-        "--set=x.pulse_nm=15875/8",
-        "--set=z.pulse_nm=15875/16",
-        "--set=start=1,2",
-        "--hold-at=900",
-        "--override-at=300=180",
-        "--override-at=2500=20",
-    ],
-];
-const ARCS: &str = "tests/on-target/programs/arcs.nc";
-const SHORT: &str = "tests/on-target/programs/short-blocks.nc";
+/// Programs whose pulses on the emulated chip are compared with the desktop's.
+const EMULATED: [&str; 3] = ["emulate", "demo", "tests/on-target/programs"];
 
 /// Runs cargo; says what and how long.
 fn cargo(what: &str, arguments: &[&str], environment: &[(&str, &str)]) -> Result<(), String> {
@@ -58,8 +44,7 @@ pub(crate) fn test() -> Result<(), String> {
         [("CARGO_PROFILE_RELEASE_DEBUG_ASSERTIONS", "true"), ("CARGO_PROFILE_RELEASE_OVERFLOW_CHECKS", "true")];
     cargo("tests", &["test", "--workspace", "--release", "--target-dir", "target/checked"], &checks)?;
     let tool = std::env::current_exe().map_err(|error| error.to_string())?;
-    let emulated = EMULATED.map(|arguments| [&["emulate"], arguments].concat());
-    for arguments in std::iter::once(&vec!["firmware"]).chain(&emulated) {
+    for arguments in [&["firmware"][..], &EMULATED] {
         eprintln!("\n== cargo xtask {}", arguments.join(" "));
         let status = Command::new(&tool).args(arguments).current_dir(crate::root()).status();
         if !status.map_err(|error| error.to_string())?.success() {

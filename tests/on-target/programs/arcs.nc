@@ -1,3 +1,4 @@
+; Arcs of more than a quadrant, half circles, and full circles about centres off the lattice.
 G21 G90
 G0 X5 Z5
 G2 X10 Z10 I5 K0 F800

@@ -1,3 +1,4 @@
+; A rapid, lines, arcs with R and a programmed stop.
 G21 G90 G94
 G0 X10 Z5
 G1 X12 Z8 F600

@@ -1,3 +1,4 @@
+; A wave of 600 lines of 50 um and a bit.
 G21 G90
 G1 X0 Z-0.01 F900
 X0.000 Z0.000
