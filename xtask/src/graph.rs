@@ -25,7 +25,7 @@ const PANICS: [&str; 7] = [
 ];
 
 /// Where the vector table begins, and its first entries: stack, reset.
-const VECTORS: &str = ".vector_table";
+pub(crate) const VECTORS: &str = ".vector_table";
 const RESET: u32 = 1;
 
 /// `cargo xtask no-panic`, second half.
@@ -188,6 +188,18 @@ impl Graph {
                 edges.insert(*owner);
             }
         }
+    }
+
+    /// Functions that may run where `start` does, itself included.
+    pub(crate) fn reached(&self, start: u32) -> BTreeSet<u32> {
+        let (mut reached, mut queue) = (BTreeSet::from([start]), vec![start]);
+        while let Some(at) = queue.pop() {
+            let none = BTreeSet::new();
+            let indirect = if self.indirect.contains(&at) { &self.taken } else { &none };
+            let next = self.edges.get(&at).into_iter().flatten().chain(indirect);
+            queue.extend(next.filter(|next| reached.insert(**next)));
+        }
+        reached
     }
 
     /// Fails with a path where a panic can be reached; else how many functions can.

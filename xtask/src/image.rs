@@ -9,6 +9,8 @@ use anyhow::{Context as _, Result, bail};
 use object::read::elf::{ElfFile32, FileHeader, ProgramHeader};
 use object::{LittleEndian, Object, ObjectSection, ObjectSymbol, SectionKind, SymbolKind, elf};
 
+use crate::graph::VECTORS;
+
 /// Where RAM begins; what is loaded below is flash.
 const RAM: u64 = 0x2000_0000;
 /// Fills gaps, as erased flash does.
@@ -160,6 +162,13 @@ impl Image {
     /// Little-endian word.
     pub(crate) fn word(&self, at: u32) -> Option<u32> {
         Some(u32::from_le_bytes(self.bytes(at, 4)?.try_into().ok()?))
+    }
+
+    /// The number of the exception that a handler is for.
+    pub(crate) fn vector(&self, handler: u32) -> Option<u32> {
+        let (_, bytes, _) = self.sections.iter().find(|(_, _, name)| name == VECTORS)?;
+        let words = bytes.chunks_exact(4).filter_map(|word| Some(u32::from_le_bytes(word.try_into().ok()?)));
+        (0..).zip(words).find(|(_, word)| *word == handler | 1).map(|(number, _)| number)
     }
 
     /// Address of the function with this name.

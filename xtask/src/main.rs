@@ -5,7 +5,9 @@
 mod compare;
 mod desktop;
 mod emulate;
+mod endless;
 mod firmware;
+mod gdb;
 mod graph;
 mod image;
 mod links;
@@ -47,6 +49,8 @@ enum Task {
     },
     /// Runs programs on the emulated chip and compares every event with the desktop's train.
     Emulate(emulate::Arguments),
+    /// Loops for ever in the emulated chip's background, at one point a run: no pulse may change.
+    Endless(endless::Arguments),
     /// Counts the instructions that a step costs; prints JSON.
     Measure(measure::Arguments),
     /// Checks that no panic can be reached: by linking the portable code, and in the call graph of the images.
@@ -63,6 +67,7 @@ fn main() -> ExitCode {
         Task::Soak { cases } => test::soak(cases).map_err(anyhow::Error::msg),
         Task::Firmware { board } => firmware::run(&board.boards()),
         Task::Emulate(arguments) => emulate::run(&arguments),
+        Task::Endless(arguments) => endless::run(&arguments),
         Task::Measure(arguments) => measure::run(&arguments),
         Task::NoPanic { board } => {
             // the graph tells where a panic is that the linker has found

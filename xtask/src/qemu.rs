@@ -119,6 +119,7 @@ impl Machine {
             reader: BufReader::new(self.serial.try_clone()?),
             writer: self.serial.try_clone()?,
             under_way: Vec::new(),
+            tolerant: false,
         })
     }
 }
@@ -132,6 +133,8 @@ pub(crate) struct Sender {
     writer: UnixStream,
     /// Length and number of each line that was not answered yet, oldest first.
     under_way: Vec<(usize, u32)>,
+    /// A line may be refused.
+    tolerant: bool,
 }
 
 impl Sender {
@@ -155,7 +158,7 @@ impl Sender {
         loop {
             let line = self.line()?;
             let number = self.under_way.first().map_or(0, |(_, number)| *number);
-            if line == "ok" {
+            if line == "ok" || self.tolerant && line.starts_with("error") {
                 self.under_way.remove(0);
                 return Ok(());
             }
@@ -193,6 +196,16 @@ impl Sender {
         self.writer.write_all(&[line, b"\n"].concat())?;
         self.under_way.push((length, number));
         Ok(())
+    }
+
+    /// Goes on behind lines that are refused.
+    pub(crate) const fn tolerate(&mut self) {
+        self.tolerant = true;
+    }
+
+    /// Sends a byte that acts at once.
+    pub(crate) fn realtime(&mut self, byte: u8) -> Result<()> {
+        Ok(self.writer.write_all(&[byte])?)
     }
 
     /// Waits until every line is answered.
