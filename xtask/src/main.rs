@@ -2,6 +2,7 @@
 //! What needs more than cargo: `cargo xtask --help`. `cargo xtask test` runs everything that continuous integration
 //! runs.
 
+mod book;
 mod compare;
 mod desktop;
 mod emulate;

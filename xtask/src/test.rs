@@ -8,6 +8,9 @@ use crate::links;
 /// Programs whose pulses on the emulated chip are compared with the desktop's.
 const EMULATED: [&str; 3] = ["emulate", "demo", "tests/on-target/programs"];
 
+/// A share of the endless loops in the background.
+const ENDLESS: [&str; 3] = ["endless", "--points", "10"];
+
 /// Runs cargo; says what and how long.
 fn cargo(what: &str, arguments: &[&str], environment: &[(&str, &str)]) -> Result<(), String> {
     eprintln!("\n== {what}: cargo {}", arguments.join(" "));
@@ -44,7 +47,7 @@ pub(crate) fn test() -> Result<(), String> {
         [("CARGO_PROFILE_RELEASE_DEBUG_ASSERTIONS", "true"), ("CARGO_PROFILE_RELEASE_OVERFLOW_CHECKS", "true")];
     cargo("tests", &["test", "--workspace", "--release", "--target-dir", "target/checked"], &checks)?;
     let tool = std::env::current_exe().map_err(|error| error.to_string())?;
-    for arguments in [&["firmware"][..], &EMULATED] {
+    for arguments in [&["firmware"][..], &EMULATED, &ENDLESS] {
         eprintln!("\n== cargo xtask {}", arguments.join(" "));
         let status = Command::new(&tool).args(arguments).current_dir(crate::root()).status();
         if !status.map_err(|error| error.to_string())?.success() {
