@@ -5,8 +5,9 @@
 //! The portable half of the firmware: what the desktop runs, too.
 //!
 //! [`background`] turns program text into blocks and keeps the parameters; [`foreground`] executes the blocks tick
-//! by tick. Between the two stand a queue of blocks and a queue of commands, nothing else. The other half, `main.rs`
+//! by tick. Between the two stand a queue of blocks and a queue of commands ([`queue`]), nothing else. The other half, `main.rs`
 //! and `board/`, exists only on a chip.
 
 pub mod background;
 pub mod foreground;
+pub mod queue;

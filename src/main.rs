@@ -32,16 +32,16 @@ mod app {
     use handcnc::background::status::{Faults, Status};
     use handcnc::foreground::train_queue::{Player, TrainQueue, Writer};
     use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
-    use heapless::spsc::{Consumer, Producer, Queue};
+    use handcnc::queue::{Consumer, Producer, Queue};
     use interp_core::block::Block;
     use interp_core::units::Lattice;
     use stm32f4xx_hal::pac::Interrupt;
 
     use crate::board::{self, Bell, Bench, Board, Drives, EmergencyInput, Receiver, Sender, StepPort, StepTimer};
 
-    /// Bytes on their way to the link, one less than the length: what a sender may have under way.
+    /// Bytes on their way to the link: what a sender may have under way.
     const BYTES: usize = 256;
-    /// Real-time commands on their way to the link, one less than the length.
+    /// Real-time commands on their way to the link.
     const REALTIME: usize = 32;
 
     static BELL: Bell = Bell::new();

@@ -7,21 +7,22 @@ pub mod published;
 pub mod rehearsal;
 pub mod train_queue;
 
-use heapless::spsc::Consumer;
 use interp_core::block::Block;
 use interp_core::channel::{Channel, Report, State};
 use interp_core::config::Machine;
 use interp_core::train::Train;
 use interp_core::units::Lattice;
 
+use crate::queue::Consumer;
+
 /// Blocks that a lathe looks ahead. The same on every board and on the desktop, since the pulses depend on it.
 pub const LOOKAHEAD: usize = 64;
 
-/// Capacity of the queue of blocks, one less than its length: what the background may be ahead of the look-ahead.
-pub const BLOCK_QUEUE: usize = 17;
+/// Capacity of the queue of blocks: what the background may be ahead of the look-ahead.
+pub const BLOCK_QUEUE: usize = 16;
 
-/// Capacity of the queue of commands, one less than its length.
-pub const COMMAND_QUEUE: usize = 9;
+/// Capacity of the queue of commands.
+pub const COMMAND_QUEUE: usize = 8;
 
 /// What the background, a key or the link asks of the foreground.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]

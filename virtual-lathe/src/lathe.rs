@@ -10,7 +10,7 @@ use feature_editor::codes::{Format, Item};
 use handcnc::background::compile::{Compiler, Finding};
 use handcnc::background::parameters::Parameters;
 use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
-use heapless::spsc::Queue;
+use handcnc::queue::Queue;
 use interp_core::block::Block;
 use interp_core::channel::{Report, State};
 use interp_core::config::Machine;

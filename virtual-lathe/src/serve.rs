@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 use handcnc::background::link::{Link, Snapshot, realtime};
 use handcnc::background::parameters::Parameters;
 use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
-use heapless::spsc::{Producer, Queue};
+use handcnc::queue::{Producer, Queue};
 use interp_core::block::Block;
 use interp_core::channel::{Report, State};
 use interp_core::config::Machine;

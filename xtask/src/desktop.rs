@@ -5,7 +5,7 @@ use feature_editor::codes::{Detector, Format, Item};
 use handcnc::background::compile::{Compiler, Finding};
 use handcnc::background::parameters::Parameters;
 use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
-use heapless::spsc::Queue;
+use handcnc::queue::Queue;
 use interp_core::block::{Block, Work};
 use interp_core::channel::State;
 use interp_core::config::Machine;

@@ -51,8 +51,7 @@ impl Link {
                 b"G" | b"g" => self.write_modal(out),
                 b"I" | b"i" => {
                     self.say(out, format_args!("[VER:1.1h.20190830:HandCNC {}]", env!("CARGO_PKG_VERSION")));
-                    let blocks = BLOCK_QUEUE.saturating_sub(1);
-                    self.say(out, format_args!("[OPT:V,{blocks},{RECEIVE_BUFFER}]"));
+                    self.say(out, format_args!("[OPT:V,{BLOCK_QUEUE},{RECEIVE_BUFFER}]"));
                 }
                 b"X" | b"x" => {}
                 b"H" | b"h" => return Err(Refusal::Homing),

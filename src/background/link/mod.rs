@@ -42,7 +42,6 @@ mod tests;
 use core::fmt::Write;
 
 use feature_editor::codes::{Format, MAX_LINE};
-use heapless::spsc::Producer;
 use heapless::{Deque, Vec};
 use interp_core::block::Block;
 use interp_core::channel::State;
@@ -51,6 +50,7 @@ use interp_core::config::Machine;
 use super::compile::Compiler;
 use super::parameters::Parameters;
 use crate::foreground::Command;
+use crate::queue::Producer;
 use outbox::{Outbox, Settling};
 use program::Accessories;
 use receiver::{Received, Receiver};

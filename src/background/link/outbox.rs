@@ -1,9 +1,9 @@
 //! Commands on their way to the foreground, and whether they have arrived.
 
-use heapless::spsc::Producer;
 use interp_core::config::Machine;
 
 use crate::foreground::Command;
+use crate::queue::Producer;
 
 /// Whether the foreground has obeyed what was asked of it.
 ///

@@ -10,7 +10,7 @@ mod streams;
 
 use super::*;
 use crate::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Foreground};
-use heapless::spsc::Queue;
+use crate::queue::Queue;
 use interp_core::train::{Event, Hash};
 use interp_core::units::{Axis, Lattice};
 use std::boxed::Box;

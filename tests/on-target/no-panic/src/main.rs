@@ -17,7 +17,7 @@ mod image {
     use handcnc::foreground::rehearsal::Rehearsal;
     use handcnc::foreground::train_queue::TrainQueue;
     use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
-    use heapless::spsc::Queue;
+    use handcnc::queue::Queue;
     use interp_core::block::Block;
     use interp_core::units::Lattice;
 
