@@ -18,12 +18,14 @@ fn main() {}
 /// | 4    | `pulse`       | TIM5                            | none   | plays one event of the train                |
 /// | 3    | `interpolate` | I2C3_ER, pended by `pulse`      | none   | makes the tick after the one being played   |
 /// | 2    | `receive`     | USART2                          | none   | bytes and real-time commands into queues    |
-/// | 1    | `edit`        | the bell: `interpolate`, `receive` | none | the link: replies, compiles, fills the queue |
+/// | 1    | `edit`        | I2C3_EV, pended by both above   | none   | the link: replies, compiles, fills the queue |
 /// | 0    | `idle`        | nothing else to do              | none   | sleeps                                      |
 ///
-/// Between the tasks stand single-producer queues and published words, never a lock.
+/// Between the tasks stand single-producer queues and published words, never a lock. `edit` is no asynchronous task: the
+/// state machine of an `async fn` keeps a panic reachable ("resumed after completion") that nothing proves away. Pended
+/// while it runs, it runs once more.
 #[cfg(target_os = "none")]
-#[rtic::app(device = stm32f4xx_hal::pac, peripherals = true, dispatchers = [I2C3_EV])]
+#[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
     use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
@@ -37,14 +39,13 @@ mod app {
     use interp_core::units::Lattice;
     use stm32f4xx_hal::pac::Interrupt;
 
-    use crate::board::{self, Bell, Bench, Board, Drives, EmergencyInput, Receiver, Sender, StepPort, StepTimer};
+    use crate::board::{self, Bench, Board, Drives, EmergencyInput, Receiver, Sender, StepPort, StepTimer};
 
     /// Bytes on their way to the link: what a sender may have under way.
     const BYTES: usize = 256;
     /// Real-time commands on their way to the link.
     const REALTIME: usize = 32;
 
-    static BELL: Bell = Bell::new();
     static STATUS: Status = Status::new();
     static LATE: AtomicU32 = AtomicU32::new(0);
     static HUNGRY: AtomicBool = AtomicBool::new(true);
@@ -101,7 +102,6 @@ mod app {
         link.banner(&mut sender);
         drives.enable();
         rtic::pend(Interrupt::I2C3_ER); // the first tick, played while the second is made
-        let _ = edit::spawn(); // cannot fail: not spawned before
         let inbox = Inbox::new(bytes_in, realtime_in);
         (
             Shared {},
@@ -155,7 +155,7 @@ mod app {
         train.publish();
         STATUS.publish(&report, foreground, faults);
         HUNGRY.store(foreground.is_hungry(), Relaxed);
-        BELL.ring();
+        rtic::pend(Interrupt::I2C3_EV);
     }
 
     /// Sorts what the link receives.
@@ -164,25 +164,24 @@ mod app {
         while let Some(byte) = cx.local.receiver.byte() {
             cx.local.inbox.take(byte);
         }
-        BELL.ring();
+        rtic::pend(Interrupt::I2C3_EV);
     }
 
     /// Talks with the sender and compiles what it sends.
-    #[task(priority = 1, local = [link, sender, bytes, realtime, blocks, commands])]
-    async fn edit(cx: edit::Context) {
+    #[task(binds = I2C3_EV, priority = 1, local = [link, sender, bytes, realtime, blocks, commands])]
+    fn edit(cx: edit::Context) {
         let edit::LocalResources { link, sender, bytes, realtime, blocks, commands, .. } = cx.local;
+        #[cfg(feature = "planted-panic")]
+        board::plant();
         loop {
-            BELL.sleep().await;
-            loop {
-                while let Some(byte) = bytes.dequeue() {
-                    if byte == LOST { link.damaged() } else { link.receive(byte) }
-                }
-                while let Some(what) = realtime.dequeue() {
-                    link.realtime(what, commands, &STATUS.snapshot(), sender);
-                }
-                if !link.work(blocks, commands, &STATUS.snapshot(), sender) {
-                    break;
-                }
+            while let Some(byte) = bytes.dequeue() {
+                if byte == LOST { link.damaged() } else { link.receive(byte) }
+            }
+            while let Some(what) = realtime.dequeue() {
+                link.realtime(what, commands, &STATUS.snapshot(), sender);
+            }
+            if !link.work(blocks, commands, &STATUS.snapshot(), sender) {
+                break;
             }
         }
     }

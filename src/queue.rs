@@ -7,12 +7,16 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
+use heapless::Vec;
 use try_lock::TryLock;
+
+/// A place of the queue. Not an `Option`, whose `None` need not be all zeros: an empty queue would take flash.
+type Place<T> = TryLock<Vec<T, 1>>;
 
 /// A queue of at most `N` items, `N` a power of two.
 #[derive(Debug)]
 pub struct Queue<T, const N: usize> {
-    places: [TryLock<Option<T>>; N],
+    places: [Place<T>; N],
     counts: Counts,
 }
 
@@ -42,7 +46,7 @@ impl<T, const N: usize> Queue<T, N> {
     pub const fn new() -> Self {
         const { assert!(N.is_power_of_two() && N < 1 << 16) };
         Self {
-            places: [const { TryLock::new(None) }; N],
+            places: [const { TryLock::new(Vec::new()) }; N],
             counts: Counts { put: AtomicU32::new(0), taken: AtomicU32::new(0) },
         }
     }
@@ -55,14 +59,14 @@ impl<T, const N: usize> Queue<T, N> {
 }
 
 /// The place of the `count`th item.
-fn place<T>(places: &[TryLock<Option<T>>], count: u32) -> Option<&TryLock<Option<T>>> {
+fn place<T>(places: &[Place<T>], count: u32) -> Option<&Place<T>> {
     places.get(count as usize & places.len().wrapping_sub(1))
 }
 
 /// The side that puts in.
 #[derive(Debug)]
 pub struct Producer<'q, T> {
-    places: &'q [TryLock<Option<T>>],
+    places: &'q [Place<T>],
     counts: &'q Counts,
 }
 
@@ -76,7 +80,8 @@ impl<T> Producer<'_, T> {
         if self.ready()
             && let Some(mut place) = place(self.places, put).and_then(TryLock::try_lock)
         {
-            *place = Some(item);
+            // it is free, and so empty
+            place.push(item)?;
             drop(place);
             self.counts.put.store(put.wrapping_add(1), Ordering::Release);
             return Ok(());
@@ -108,7 +113,7 @@ impl<T> Producer<'_, T> {
 /// The side that takes out.
 #[derive(Debug)]
 pub struct Consumer<'q, T> {
-    places: &'q [TryLock<Option<T>>],
+    places: &'q [Place<T>],
     counts: &'q Counts,
 }
 
@@ -119,7 +124,7 @@ impl<T> Consumer<'_, T> {
         if !self.ready() {
             return None;
         }
-        let item = place(self.places, taken)?.try_lock()?.take();
+        let item = place(self.places, taken)?.try_lock()?.pop();
         self.counts.taken.store(taken.wrapping_add(1), Ordering::Release);
         item
     }

@@ -77,7 +77,17 @@ impl Board {
 
 /// Builds a board's image: the path of its ELF file.
 pub(crate) fn build(toolchain: &Toolchain, board: Board) -> Result<PathBuf> {
-    let feature = format!("board-{}", board.name());
+    build_with(toolchain, board, None)
+}
+
+/// Builds a board's image, with one more feature: the path of its ELF file.
+pub(crate) fn build_with(toolchain: &Toolchain, board: Board, more: Option<&str>) -> Result<PathBuf> {
+    let mut feature = format!("board-{}", board.name());
+    let mut name = format!("handcnc-{}", board.name());
+    if let Some(more) = more {
+        feature = format!("{feature},{more}");
+        name = format!("{name}-{more}");
+    }
     let arguments = [
         "build",
         "--quiet",
@@ -94,7 +104,7 @@ pub(crate) fn build(toolchain: &Toolchain, board: Board) -> Result<PathBuf> {
         bail!("the firmware of {} does not build", board.name());
     }
     let built = target().join("firmware").join(TARGET).join("firmware/firmware");
-    let kept = target().join("firmware").join(format!("handcnc-{}.elf", board.name()));
+    let kept = target().join("firmware").join(format!("{name}.elf"));
     fs::copy(&built, &kept).with_context(|| format!("copying {}", built.display()))?;
     Ok(kept)
 }

@@ -42,6 +42,12 @@ pub(crate) fn run(boards: &[Board]) -> Result<()> {
             graph.roots.len()
         );
     }
+    // a check that cannot fail proves nothing, and an image may well have no panic at all
+    let image = Image::read(&firmware::build_with(&toolchain, Board::Qemu, Some("planted-panic"))?)?;
+    match Graph::of(&image)?.check(&image) {
+        Ok(_) => bail!("the check of the call graph did not find a planted panic"),
+        Err(found) => println!("a planted panic: {}", found.to_string().replace("\n ", "")),
+    }
     Ok(())
 }
 
@@ -208,9 +214,6 @@ impl Graph {
         let panics = |at: &u32| {
             image.functions.get(at).is_some_and(|f| f.names.iter().any(|name| PANICS.iter().any(|p| name.contains(p))))
         };
-        if !image.functions.keys().any(panics) {
-            bail!("no panic function is known by its name, so nothing was checked");
-        }
         let mut from: BTreeMap<u32, Option<u32>> = self.roots.iter().map(|root| (*root, None)).collect();
         let mut queue: VecDeque<u32> = self.roots.iter().copied().collect();
         let mut paths = Vec::new();
