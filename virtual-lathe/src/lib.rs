@@ -14,6 +14,7 @@ pub mod picture;
 pub mod program;
 pub mod report;
 pub mod serve;
+pub mod settings;
 pub mod turn;
 pub mod watch;
 

@@ -3,16 +3,17 @@
 //! `x.pulse_nm = "15875/8"` and a table `[x]` with `pulse_nm = 1250` say the same. Numbers may be written as TOML
 //! numbers or as text; `start` is text or an array of two numbers.
 
-use handcnc::background::parameters::Parameters;
 use toml::de::{DeTable, DeValue};
 
-/// Reads a machine file into `parameters`; returns every error, as `NAME:LINE: message`.
-pub fn read(name: &str, text: &str, parameters: &mut Parameters) -> Vec<String> {
+use crate::settings::Settings;
+
+/// Reads a machine file into `settings`; returns every error, as `NAME:LINE: message`.
+pub fn read(name: &str, text: &str, settings: &mut Settings) -> Vec<String> {
     match DeTable::parse(text) {
         Ok(table) => {
             let mut errors = Vec::new();
             walk("", table.get_ref(), &mut |key, value, at| {
-                if let Err(error) = parameters.set(key, value) {
+                if let Err(error) = settings.set(key, value) {
                     let line = text.get(..at).unwrap_or_default().matches('\n').count() + 1;
                     errors.push(format!("error: {name}:{line}: {key} = {value}: {error}"));
                 }

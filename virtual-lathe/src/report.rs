@@ -7,6 +7,8 @@ use handcnc::background::parameters::{DEFINITIONS, Kind};
 use measure::{PerAxis, Report};
 use serde_json::{Map, Value, json};
 
+use crate::settings::TABLES;
+
 /// Figures that the checker does not have.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
@@ -125,11 +127,16 @@ pub fn parameters() -> String {
             Kind::Choice(words) => words.join(", "),
             Kind::Place => "X,Z, each -2100 to 2100".into(),
         };
-        let _ = writeln!(
-            text,
-            "{:<18} {:<20} {:<7} {:<32} {}",
-            definition.name, definition.default, definition.unit, range, definition.help
-        );
+        row(&mut text, [definition.name, definition.default, definition.unit, &range, definition.help]);
+    }
+    for figure in TABLES.iter().copied().flatten() {
+        row(&mut text, [figure.name, figure.default, figure.unit, &figure.range(), figure.help]);
     }
     text
+}
+
+/// A row of the table.
+fn row(text: &mut String, [name, default, unit, range, help]: [&str; 5]) {
+    // writing to a string cannot fail
+    let _ = writeln!(text, "{name:<18} {default:<20} {unit:<7} {range:<32} {help}");
 }

@@ -54,14 +54,14 @@ pub struct Job {
 
 /// Serves until the process is ended; the exit code when it can't.
 pub fn serve(job: &Job) -> u8 {
-    let (parameters, machine) = match turn::settings(job.machine.as_deref(), &job.set) {
+    let (settings, machine) = match turn::settings(job.machine.as_deref(), &job.set) {
         Ok(settings) => settings,
         Err(code) => return code,
     };
     let result = TcpListener::bind((Ipv4Addr::LOCALHOST, job.port)).and_then(|listener| {
         listener.set_nonblocking(true)?;
         tell(format_args!("listening on {}", listener.local_addr()?));
-        run(&listener, job.fast, parameters, &machine)
+        run(&listener, job.fast, settings.parameters, &machine)
     });
     match result {
         Ok(()) => turn::DONE,

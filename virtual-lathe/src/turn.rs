@@ -16,8 +16,9 @@ use crate::output::{Pending, Places};
 use crate::picture::{self, Drawing, Inset, Thinner};
 use crate::program::Program;
 use crate::report::{self, Run};
+use crate::settings::{Refusal, Settings};
 use crate::watch::{Watch, Watched};
-use crate::{DEMO, machine_file, messages};
+use crate::{DEMO, messages};
 
 /// Exit code: done.
 pub const DONE: u8 = 0;
@@ -95,13 +96,14 @@ fn told(failure: Failure) -> u8 {
 ///
 /// # Errors
 /// The exit code; all errors are told.
-pub fn settings(machine: Option<&Path>, set: &[(String, String)]) -> Result<(Parameters, Machine), u8> {
+pub fn settings(machine: Option<&Path>, set: &[(String, String)]) -> Result<(Settings, Machine), u8> {
     let job = Job { machine: machine.map(Into::into), set: set.to_vec(), ..Job::default() };
     parameters(&job).map_err(told)
 }
 
 fn run(job: &Job) -> Result<(), Failure> {
-    let (parameters, machine) = parameters(job)?;
+    let (settings, machine) = parameters(job)?;
+    let parameters = &settings.parameters;
     let program = match &job.file {
         None => Program::Text { name: "handle.nc".into(), text: DEMO.to_vec() },
         Some(path) => Program::open(path).map_err(|error| Failure::Unusable(format!("{}: {error}", path.display())))?,
@@ -120,49 +122,33 @@ fn run(job: &Job) -> Result<(), Failure> {
         None => program.detect()?,
     };
     let bar = progress(program.size());
-    let (warnings, chooser) = check(&program, format, &parameters, &machine, &bar)?;
+    let (warnings, chooser) = check(&program, format, parameters, &machine, &bar)?;
     let trace = match &job.trace {
         Some(path) => Some(Pending::create(path)?),
         None => None,
     };
     bar.set_message("turning");
     bar.set_position(0);
-    let mut watch = Watch::new(&parameters, &machine, chooser, trace, bar)?;
+    let mut watch = Watch::new(parameters, &machine, chooser, trace, bar)?;
     let began = Instant::now();
-    lathe::run(&program, format, &parameters, &machine, &[], &mut watch)?;
+    lathe::run(&program, format, parameters, &machine, &[], &mut watch)?;
     let wall = began.elapsed();
     watch.bar().finish_and_clear();
     conclude(job, &pictures, &name, watch, warnings, wall)
 }
 
 /// Reads machine file and settings; all errors are told.
-fn parameters(job: &Job) -> Result<(Parameters, Machine), Failure> {
-    let mut parameters = Parameters::new();
-    let mut errors = Vec::new();
-    if let Some(path) = &job.machine {
-        let unreadable = |error: &dyn std::fmt::Display| Failure::Unusable(format!("{}: {error}", path.display()));
-        let bytes = std::fs::read(path).map_err(|error| unreadable(&error))?;
-        let text = String::from_utf8(bytes).map_err(|error| unreadable(&error))?;
-        errors = machine_file::read(&path.display().to_string(), &text, &mut parameters);
-    }
-    for (name, value) in &job.set {
-        if let Err(error) = parameters.set(name, value) {
-            errors.push(format!("error: --set {name}={value}: {error}"));
+fn parameters(job: &Job) -> Result<(Settings, Machine), Failure> {
+    Settings::read(job.machine.as_deref(), &job.set).map_err(|refusal| match refusal {
+        Refusal::Unreadable(message) => Failure::Unusable(message),
+        Refusal::Wrong(errors) => {
+            for error in &errors {
+                eprintln!("{error}");
+            }
+            eprintln!("   = `parameters` lists all names, units and ranges; nothing was run");
+            Failure::Refused
         }
-    }
-    if errors.is_empty() && parameters.feed_override() == 0 {
-        errors.push("error: feed_override = 0: the program would never end".into());
-    }
-    match parameters.machine() {
-        Ok(machine) if errors.is_empty() => return Ok((parameters, machine)),
-        Ok(_) => {}
-        Err(error) => errors.push(format!("error: {error}")),
-    }
-    for error in &errors {
-        eprintln!("{error}");
-    }
-    eprintln!("   = `parameters` lists all names, units and ranges; nothing was run");
-    Err(Failure::Refused)
+    })
 }
 
 /// Checks the program whole; its warnings, and what of it is worth magnifying.

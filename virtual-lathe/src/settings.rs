@@ -1,0 +1,84 @@
+//! Parameters as typed: the firmware's and, behind them, the figures of the desktop's models.
+
+use std::path::Path;
+
+use figures::{FigureError, Figures};
+use handcnc::background::parameters::{ParameterError, Parameters};
+use interp_core::config::Machine;
+
+use crate::machine_file;
+
+/// The tables of the desktop's models, in the order of the list.
+pub const TABLES: &[&[figures::Definition]] = &[];
+
+/// Everything that `--set` and a machine file set.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The firmware's parameters.
+    pub parameters: Parameters,
+    /// Figures of the desktop's models.
+    pub figures: Figures,
+}
+
+/// Why settings were refused.
+#[derive(Clone, Debug)]
+pub enum Refusal {
+    /// The machine file can't be read.
+    Unreadable(String),
+    /// Everything that is wrong, each as a line of its own.
+    Wrong(Vec<String>),
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { parameters: Parameters::new(), figures: Figures::new(TABLES) }
+    }
+}
+
+impl Settings {
+    /// Reads a machine file, if there is one, then parameters by name, which beat it.
+    ///
+    /// # Errors
+    /// [`Refusal`], with all that is wrong and not only the first of it.
+    pub fn read(file: Option<&Path>, set: &[(String, String)]) -> Result<(Self, Machine), Refusal> {
+        let mut settings = Self::default();
+        let mut errors = Vec::new();
+        if let Some(path) = file {
+            let unreadable =
+                |error: &dyn std::fmt::Display| Refusal::Unreadable(format!("{}: {error}", path.display()));
+            let bytes = std::fs::read(path).map_err(|error| unreadable(&error))?;
+            let text = String::from_utf8(bytes).map_err(|error| unreadable(&error))?;
+            errors = machine_file::read(&path.display().to_string(), &text, &mut settings);
+        }
+        for (name, value) in set {
+            if let Err(error) = settings.set(name, value) {
+                errors.push(format!("error: --set {name}={value}: {error}"));
+            }
+        }
+        if errors.is_empty() && settings.parameters.feed_override() == 0 {
+            errors.push("error: feed_override = 0: the program would never end".into());
+        }
+        match settings.parameters.machine() {
+            Ok(machine) if errors.is_empty() => return Ok((settings, machine)),
+            Ok(_) => {}
+            Err(error) => errors.push(format!("error: {error}")),
+        }
+        Err(Refusal::Wrong(errors))
+    }
+
+    /// Sets a parameter from text.
+    ///
+    /// # Errors
+    /// What to tell about it; everything keeps its value.
+    pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
+        match self.parameters.set(name, text) {
+            Err(ParameterError::Unknown) => {}
+            result => return result.map_err(|error| error.to_string()),
+        }
+        self.figures.set(name, text).map_err(|error| match error {
+            // the name stands before the message already
+            FigureError::Unknown(_) => ParameterError::Unknown.to_string(),
+            error => error.to_string(),
+        })
+    }
+}
