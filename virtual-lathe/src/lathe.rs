@@ -21,7 +21,7 @@ use crate::program::{Lines, Program};
 /// What watches a run.
 pub trait Observer {
     /// The background compiled an action, ahead of its execution; `blocks` is how many blocks it made.
-    fn compiled(&mut self, item: &Item, blocks: usize);
+    fn compiled(&mut self, _item: &Item, _blocks: usize) {}
 
     /// The foreground made a tick that belongs to a cycle.
     ///
@@ -30,13 +30,41 @@ pub trait Observer {
     fn tick(&mut self, events: &[u32], report: &Report) -> io::Result<()>;
 
     /// A command was given, to act from the next tick on.
-    fn commanded(&mut self, command: Command);
+    fn commanded(&mut self, _command: Command) {}
 
     /// A programmed stop was passed by.
-    fn stopped(&mut self, line: u32);
+    fn stopped(&mut self, _line: u32) {}
 
     /// Bytes of the program read so far.
-    fn progress(&mut self, bytes: u64);
+    fn progress(&mut self, _bytes: u64) {}
+}
+
+/// Two that watch one run, the first one first.
+impl<A: Observer, B: Observer> Observer for (&mut A, &mut B) {
+    fn compiled(&mut self, item: &Item, blocks: usize) {
+        self.0.compiled(item, blocks);
+        self.1.compiled(item, blocks);
+    }
+
+    fn tick(&mut self, events: &[u32], report: &Report) -> io::Result<()> {
+        self.0.tick(events, report)?;
+        self.1.tick(events, report)
+    }
+
+    fn commanded(&mut self, command: Command) {
+        self.0.commanded(command);
+        self.1.commanded(command);
+    }
+
+    fn stopped(&mut self, line: u32) {
+        self.0.stopped(line);
+        self.1.stopped(line);
+    }
+
+    fn progress(&mut self, bytes: u64) {
+        self.0.progress(bytes);
+        self.1.progress(bytes);
+    }
 }
 
 /// What checking a program found.

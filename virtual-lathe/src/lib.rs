@@ -9,6 +9,7 @@ pub mod insets;
 pub mod lathe;
 pub mod machine_file;
 pub mod messages;
+pub mod motors;
 pub mod output;
 pub mod picture;
 pub mod program;

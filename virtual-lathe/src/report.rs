@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::time::Duration;
 
 use handcnc::background::parameters::{DEFINITIONS, Kind};
+use machine::Axes;
 use measure::{PerAxis, Report};
 use serde_json::{Map, Value, json};
 
@@ -16,6 +17,10 @@ pub struct Run {
     pub blocks: u64,
     /// Time that the computer took.
     pub wall: Duration,
+    /// Pulses that the motors did not make.
+    pub lost_pulses: Axes<u64>,
+    /// Greatest part of its pull-out torque that each motor was asked for.
+    pub motor_load: Axes<f64>,
     /// Warnings, as text.
     pub warnings: Vec<String>,
 }
@@ -49,6 +54,7 @@ pub fn json(report: &Report, run: &Run) -> String {
     map.insert("max_rate_hz".into(), axes(report.max_rate_hz));
     map.insert("max_accel".into(), axes(report.max_accel));
     map.insert("feed_error_percent".into(), feed);
+    map.insert("lost_pulses".into(), json!({ "x": run.lost_pulses.x, "z": run.lost_pulses.z }));
     map.insert("warnings".into(), run.warnings.clone().into());
     let mut text = serde_json::to_string_pretty(&Value::Object(map)).unwrap_or_default();
     text.push('\n');
@@ -96,6 +102,16 @@ pub fn summary(name: &str, report: &Report, run: &Run) -> String {
         }
         None => text.push_str("  feed error  no motion is long enough to tell\n"),
     }
+    let percent = |load: f64| if load > 1.0 { "over 100 %".into() } else { format!("{:.0} %", load * 100.0) };
+    let (load, lost) = (run.motor_load, run.lost_pulses);
+    let _ = writeln!(
+        text,
+        "  motors      X {}, Z {} of pull-out at most; lost pulses X {}, Z {}",
+        percent(load.x),
+        percent(load.z),
+        lost.x,
+        lost.z
+    );
     text
 }
 
@@ -138,5 +154,5 @@ pub fn parameters() -> String {
 /// A row of the table.
 fn row(text: &mut String, [name, default, unit, range, help]: [&str; 5]) {
     // writing to a string cannot fail
-    let _ = writeln!(text, "{name:<18} {default:<20} {unit:<7} {range:<32} {help}");
+    let _ = writeln!(text, "{name:<24} {default:<18} {unit:<7} {range:<32} {help}");
 }

@@ -5,11 +5,13 @@ use std::path::Path;
 use figures::{FigureError, Figures};
 use handcnc::background::parameters::{ParameterError, Parameters};
 use interp_core::config::Machine;
+use interp_core::units::PulseSize;
+use machine::{Axes, Control, table};
 
 use crate::machine_file;
 
 /// The tables of the desktop's models, in the order of the list.
-pub const TABLES: &[&[figures::Definition]] = &[];
+pub const TABLES: &[&[figures::Definition]] = &[&table::CROSS_SLIDE, &table::CARRIAGE, &table::OTHERS];
 
 /// Everything that `--set` and a machine file set.
 #[derive(Clone, Debug)]
@@ -59,7 +61,10 @@ impl Settings {
             errors.push("error: feed_override = 0: the program would never end".into());
         }
         match settings.parameters.machine() {
-            Ok(machine) if errors.is_empty() => return Ok((settings, machine)),
+            Ok(machine) if errors.is_empty() => match settings.model(&machine) {
+                Ok(_) => return Ok((settings, machine)),
+                Err(error) => errors.push(format!("error: {error}")),
+            },
             Ok(_) => {}
             Err(error) => errors.push(format!("error: {error}")),
         }
@@ -80,5 +85,19 @@ impl Settings {
             FigureError::Unknown(_) => ParameterError::Unknown.to_string(),
             error => error.to_string(),
         })
+    }
+
+    /// The machine that the figures describe, standing where the program starts.
+    ///
+    /// # Errors
+    /// Figures that contradict each other, or the size of the pulses.
+    pub fn model(&self, machine: &Machine) -> Result<machine::Machine, FigureError> {
+        let nm = |pulse: PulseSize| f64::from(pulse.numerator()) / f64::from(pulse.denominator());
+        let start = self.parameters.start();
+        let control = Control {
+            pulse_nm: Axes { x: nm(machine.x.pulse), z: nm(machine.z.pulse) },
+            start: Axes { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) },
+        };
+        machine::Machine::new(&self.figures, control)
     }
 }

@@ -12,6 +12,7 @@ use measure::Report;
 
 use crate::insets::Chooser;
 use crate::lathe;
+use crate::motors::Motors;
 use crate::output::{Pending, Places};
 use crate::picture::{self, Drawing, Inset, Thinner};
 use crate::program::Program;
@@ -129,12 +130,14 @@ fn run(job: &Job) -> Result<(), Failure> {
     };
     bar.set_message("turning");
     bar.set_position(0);
+    let model = settings.model(&machine).map_err(|error| Failure::Unusable(error.to_string()))?;
     let mut watch = Watch::new(parameters, &machine, chooser, trace, bar)?;
+    let mut motors = Motors::new(model);
     let began = Instant::now();
-    lathe::run(&program, format, parameters, &machine, &[], &mut watch)?;
+    lathe::run(&program, format, parameters, &machine, &[], &mut (&mut watch, &mut motors))?;
     let wall = began.elapsed();
     watch.bar().finish_and_clear();
-    conclude(job, &pictures, &name, watch, warnings, wall)
+    conclude(job, &pictures, &name, watch, &motors, warnings, wall)
 }
 
 /// Reads machine file and settings; all errors are told.
@@ -198,6 +201,7 @@ fn conclude(
     pictures: &[PathBuf],
     name: &str,
     watch: Watch,
+    motors: &Motors,
     mut warnings: Vec<String>,
     wall: Duration,
 ) -> Result<(), Failure> {
@@ -213,7 +217,8 @@ fn conclude(
             list.join("\n   ")
         )));
     }
-    let run = Run { blocks, wall, warnings };
+    warnings.extend(motors.warnings());
+    let run = Run { blocks, wall, lost_pulses: motors.lost_pulses(), motor_load: motors.peaks(), warnings };
     let mut files = Vec::new();
     files.extend(trace);
     if let Some(path) = &job.report {

@@ -142,8 +142,10 @@ impl Drive {
         if done.taken != done.sent {
             self.mistake(done.taken - done.sent, clocks);
         }
-        if done.taken != 0 {
-            self.meter.pulse(now, if done.taken > 0 { 1 } else { -1 });
+        if done.sent == 0 {
+            self.meter.correct(real(done.taken));
+        } else if done.taken != 0 {
+            self.meter.pulse(now, real(done.taken));
         }
         if matches!(self.rotor, Rotor::Follows) {
             self.follow();

@@ -15,7 +15,7 @@ mod scale;
 mod screw;
 mod slide;
 mod spindle;
-mod table;
+pub mod table;
 
 pub use contact::{Edge, Switch};
 pub use drive::{Drive, Load, Loss};
@@ -29,7 +29,7 @@ pub use slide::Slide;
 pub use spindle::{Angle, Spindle};
 
 /// The figures of the machine.
-pub const TABLES: &[&[figures::Definition]] = &[&table::X, &table::Z, &table::OTHERS];
+pub const TABLES: &[&[figures::Definition]] = &[&table::CROSS_SLIDE, &table::CARRIAGE, &table::OTHERS];
 
 /// A number that is whole already, as an integer; saturates.
 #[expect(clippy::cast_possible_truncation, reason = "whole by its callers; a cast saturates, and NaN becomes 0")]

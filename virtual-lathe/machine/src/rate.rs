@@ -1,9 +1,14 @@
 //! Speed and acceleration of a pulse train, over windows of a tick.
 //!
 //! Counting pulses in a millisecond would see accelerations of a pulse a millisecond squared that are not there. So a
-//! window begins and ends at a pulse (the M/T method: T. Ohmae and others, IEEE
-//! Transactions on Industrial Electronics 29(3), 1982): the rate is exact for an even train
-//! whatever its rate, and for an evenly accelerated one it is that of the window's middle.
+//! window goes from the last pulse of the window before to its own last one, as in the M/T method (T. Ohmae and
+//! others, IEEE Transactions on Industrial Electronics 29(3), 1982), and its rate is the slope of the line of least
+//! squares through its pulses: edges of a minor axis wait for those of the major one, and that must not look like
+//! acceleration either.
+//!
+//! For pulses that lie on a parabola, the slope of that line is that of the parabola at `t = mean + S3 / (2 S2)`, with
+//! `Sn` the sum of (time - mean)^n. With this as the place of the rate an evenly accelerated train has exactly its
+//! acceleration, however its pulses lie in the window.
 
 /// A window without pulses for so many clocks is standstill.
 const STANDSTILL: f64 = 240_000.0;
@@ -11,21 +16,55 @@ const STANDSTILL: f64 = 240_000.0;
 const TICK: f64 = 12_000.0;
 const CLOCKS_PER_SECOND: f64 = 12e6;
 
+/// Sums over the pulses of a window; times in ticks since its origin, places in pulses.
+#[derive(Clone, Debug, Default)]
+struct Sums {
+    count: f64,
+    t: f64,
+    t2: f64,
+    t3: f64,
+    p: f64,
+    pt: f64,
+}
+
+impl Sums {
+    #[inline]
+    fn add(&mut self, t: f64, p: f64) {
+        self.count += 1.0;
+        self.t += t;
+        self.t2 += t * t;
+        self.t3 += t * t * t;
+        self.p += p;
+        self.pt += p * t;
+    }
+
+    /// Slope in pulses a tick, and the time that it belongs to; `None` for less than two times.
+    fn slope(&self) -> Option<(f64, f64)> {
+        let n = self.count;
+        let mean = self.t / n;
+        let s2 = self.t2 - n * mean * mean;
+        let s3 = self.t3 - 3.0 * mean * self.t2 + 2.0 * n * mean * mean * mean;
+        // two pulses are at least some clocks apart
+        (n > 1.0 && s2 > 1e-9).then(|| ((self.pt - mean * self.p) / s2, mean + s3 / (2.0 * s2)))
+    }
+}
+
 /// Rate of one axis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Meter {
-    /// First and last pulse of the running window, clocks.
-    first: f64,
-    last: f64,
-    /// Pulses of the window with their sign, and without.
-    sum: i32,
+    sums: Sums,
+    /// Pulses of the window, with their sign.
+    place: f64,
+    /// Pulses of the window, without.
     count: u32,
-    /// Last pulse of the window before.
-    before: f64,
+    /// Clock of the last pulse.
+    last: f64,
+    /// Clock from which the times of the window are told: its first pulse, or the last one before it.
+    origin: f64,
     standing: bool,
     /// Pulses a second.
     rate: f64,
-    /// Middle of the window of `rate`.
+    /// Clock that `rate` belongs to.
     middle: f64,
 }
 
@@ -36,13 +75,30 @@ impl Meter {
 
     /// A pulse at a time in clocks.
     #[inline]
-    pub(crate) fn pulse(&mut self, now: f64, sense: i32) {
+    pub(crate) fn pulse(&mut self, now: f64, sense: f64) {
         if self.count == 0 {
-            self.first = now;
+            self.sums = Sums::default();
+            self.place = 0.0;
+            // after a standstill the window begins at its first pulse
+            self.origin = if self.standing { now } else { self.last };
+            if !self.standing {
+                self.sums.add(0.0, 0.0);
+            }
         }
+        self.place += sense;
+        self.sums.add((now - self.origin) / TICK, self.place);
         self.last = now;
-        self.sum += sense;
         self.count += 1;
+    }
+
+    /// The last pulse turns out to have been `by` pulses more than was told.
+    pub(crate) fn correct(&mut self, by: f64) {
+        // behind the end of its window it is the origin of the next one, wherever it went
+        if self.count > 0 {
+            self.place += by;
+            self.sums.p += by;
+            self.sums.pt += by * (self.last - self.origin) / TICK;
+        }
     }
 
     /// Ends the window; pulses a second, and a second squared.
@@ -54,33 +110,25 @@ impl Meter {
         let between = (middle - self.middle).max(least) / CLOCKS_PER_SECOND;
         let acceleration = (rate - self.rate) / between;
         (self.rate, self.middle) = (rate, middle);
-        if self.count > 0 {
-            self.before = self.last;
-            self.standing = false;
-        }
-        (self.sum, self.count) = (0, 0);
+        self.count = 0;
         (rate, acceleration)
     }
 
-    /// Rate of the window and its middle.
+    /// Rate of the window, and the clock it belongs to.
     fn window(&mut self, now: f64) -> (f64, f64) {
         if self.count == 0 {
             // slower than a pulse in the time since the last one
-            let silence = now - self.before;
+            let silence = now - self.last;
             self.standing |= silence >= STANDSTILL;
             let most = if self.standing { 0.0 } else { CLOCKS_PER_SECOND / silence };
             return (self.rate.clamp(-most, most), now - TICK / 2.0);
         }
-        // after a standstill the window begins at the first pulse; a lone one tells nothing of the next yet
-        let (begin, pulses) = match (self.standing, self.count) {
-            (false, _) => (self.before, f64::from(self.sum)),
-            (true, 1) => {
-                return (f64::from(self.sum) * CLOCKS_PER_SECOND / STANDSTILL, self.last - TICK / 2.0);
-            }
-            (true, count) => (self.first, f64::from(self.sum) * f64::from(count - 1) / f64::from(count)),
-        };
-        let length = (self.last - begin).max(1.0);
-        (pulses / length * CLOCKS_PER_SECOND, (self.last + begin) / 2.0)
+        self.standing = false;
+        match self.sums.slope() {
+            Some((slope, at)) => (slope * CLOCKS_PER_SECOND / TICK, self.origin + at * TICK),
+            // a lone pulse after a standstill tells nothing of the next yet
+            None => (self.place * CLOCKS_PER_SECOND / STANDSTILL, self.last - TICK / 2.0),
+        }
     }
 }
 
@@ -101,7 +149,7 @@ mod tests {
                 }
                 end += TICK;
             }
-            meter.pulse(at, 1);
+            meter.pulse(at, 1.0);
         }
         worst
     }
@@ -128,7 +176,7 @@ mod tests {
     fn a_train_that_stops_comes_to_rest() {
         let mut meter = Meter::new();
         for n in 0..10 {
-            meter.pulse(f64::from(n) * 1200.0, 1);
+            meter.pulse(f64::from(n) * 1200.0, 1.0);
         }
         assert!((meter.tick(TICK).0 - 10_000.0).abs() < 1e-6);
         let rates: Vec<f64> = (2..30).map(|n| meter.tick(f64::from(n) * TICK).0).collect();

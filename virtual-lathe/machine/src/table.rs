@@ -234,15 +234,15 @@ macro_rules! axis {
 const PER_AXIS: usize = 30;
 
 /// Figures of the cross slide.
-pub(crate) static X: [Definition; PER_AXIS] =
+pub static CROSS_SLIDE: [Definition; PER_AXIS] =
     axis!("x", screw: "300", mass: "8", friction: "30", force: "100", drag: "0.05");
 
 /// Figures of the carriage.
-pub(crate) static Z: [Definition; PER_AXIS] =
+pub static CARRIAGE: [Definition; PER_AXIS] =
     axis!("z", screw: "600", mass: "25", friction: "60", force: "150", drag: "0.08");
 
 /// Figures of spindle, encoder, handwheels and switches.
-pub(crate) static OTHERS: [Definition; 15] = [
+pub static OTHERS: [Definition; 15] = [
     Definition::number("spindle.inertia_kgm2", "kg m2", 1e-5, 100.0, "0.015", "inertia of spindle, chuck and work"),
     Definition::number("spindle.torque_nm", "Nm", 0.01, 10_000.0, "7", "torque of the motor up to its base speed"),
     Definition::number("spindle.base_rpm", "1/min", 1.0, 100_000.0, "1500", "above it the motor has constant power"),
