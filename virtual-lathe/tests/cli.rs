@@ -752,10 +752,11 @@ fn the_report_has_the_keys_of_the_issue_in_order() {
             "max_rate_hz",
             "max_accel",
             "feed_error_percent",
+            "lost_pulses",
             "warnings"
         ]
     );
-    for axes in ["pulses", "max_rate_hz", "max_accel"] {
+    for axes in ["pulses", "max_rate_hz", "max_accel", "lost_pulses"] {
         assert_eq!(keys(&report[axes]), ["x", "z"]);
     }
     assert_eq!(keys(&report["deviation_pulses"]), ["walked", "programmed"]);
