@@ -163,10 +163,10 @@ mod tests {
     fn searched(motor: &Motor, speed: f64) -> f64 {
         let (e, x) = (motor.constant * speed, motor.teeth * speed * motor.inductance);
         let mut best = 0.0_f64;
-        for size in 0..=400 {
-            for angle in 0..1200 {
+        for size in 0..=200 {
+            for angle in 0..800 {
                 let (size, angle) =
-                    (motor.current * f64::from(size) / 400.0, f64::from(angle) / 600.0 * std::f64::consts::PI);
+                    (motor.current * f64::from(size) / 200.0, f64::from(angle) / 400.0 * std::f64::consts::PI);
                 let (re, im) = (size * angle.cos(), size * angle.sin());
                 let volts = (motor.resistance * re - x * im + e).hypot(motor.resistance * im + x * re);
                 if volts <= motor.voltage {
@@ -178,10 +178,10 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(24))]
+        #![proptest_config(ProptestConfig::with_cases(200))]
         #[test]
         fn pull_out_is_the_most_that_current_and_voltage_allow(
-            rpm in 0.0_f64..4000.0, ohm in 0.2_f64..3.0, mh in 0.5_f64..20.0, volts in 12.0_f64..80.0,
+            rpm in 0.0_f64..1500.0, ohm in 0.2_f64..3.0, mh in 0.5_f64..20.0, volts in 12.0_f64..80.0,
         ) {
             let texts = [ohm, mh, volts].map(|figure| format!("{figure:.3}"));
             let motor = motor(&[
@@ -192,7 +192,7 @@ mod tests {
             let speed = rpm * std::f64::consts::TAU / 60.0;
             let (found, told) = (searched(&motor, speed), motor.pull_out(speed));
             // the grid misses the true corner by a cell
-            prop_assert!(found <= told + 1e-9 && found >= told - 0.02, "{} rpm: {} told, {} found", rpm, told, found);
+            prop_assert!(found <= told + 1e-9 && found >= told - 0.03, "{} rpm: {} told, {} found", rpm, told, found);
             prop_assert!((motor.pull_out(-speed) - told).abs() <= 0.0);
         }
     }

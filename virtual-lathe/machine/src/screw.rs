@@ -141,3 +141,50 @@ impl Screw {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn screw(efficiency: &str) -> Screw {
+        let mut figures = Figures::new(crate::TABLES);
+        for (name, text) in [
+            ("screw.z.efficiency", efficiency),
+            ("screw.z.drag_nm", "0.1"),
+            ("slide.z.mass_kg", "40"),
+            ("slide.z.friction_n", "20"),
+            ("slide.z.force_n", "30"),
+        ] {
+            figures.set(name, text).unwrap();
+        }
+        Screw::new(&figures, Axis::Z).unwrap()
+    }
+
+    #[test]
+    fn torque_is_that_of_inertia_drag_and_the_force_at_the_nut() {
+        let screw = screw("0.8");
+        // by hand: k = 7.957747e-4 m/rad, J of rotor and screw 7.430406e-5 kg m2
+        let (k, inertia) = (7.957_747e-4, 7.430_406e-5);
+        assert!((screw.total_inertia() - (inertia + 40.0 * k * k)).abs() < 1e-10);
+        let close = |got: f64, expected: f64| assert!((got - expected).abs() < 1e-6, "{got} {expected}");
+        close(screw.torque(0.0, 0.0), 0.0);
+        close(screw.torque(10.0, 0.0), 0.1 + 50.0 * k / 0.8);
+        // m k a = 31.831 N
+        close(screw.torque(10.0, 1000.0), inertia * 1000.0 + 0.1 + (31.830_99 + 50.0) * k / 0.8);
+        // braking by less than friction: the nut is still pushed
+        close(screw.torque(10.0, -1000.0), -inertia * 1000.0 + 0.1 + (50.0 - 31.830_99) * k / 0.8);
+        // braking by more: the slide drives, with 2 - 1 / 0.8 = 0.75
+        close(screw.torque(10.0, -3000.0), -inertia * 3000.0 + 0.1 + (50.0 - 95.492_97) * k * 0.75);
+        // the other way round all signs change
+        for (speed, acceleration) in [(10.0, 0.0), (10.0, 1000.0), (10.0, -3000.0), (0.0, 500.0)] {
+            close(screw.torque(-speed, -acceleration), -screw.torque(speed, acceleration));
+        }
+    }
+
+    #[test]
+    fn a_screw_below_one_half_holds_by_itself() {
+        let screw = screw("0.4");
+        let braking = screw.torque(10.0, -3000.0);
+        assert!((braking - (0.1 - 7.430_406e-5 * 3000.0)).abs() < 1e-6, "{braking}");
+    }
+}

@@ -82,6 +82,16 @@ fn a_stalled_motor_loses_whole_periods_of_four_full_steps_and_goes_on() {
     play(&mut machine, Axis::X, true, ramp(1.0, 1250.0, 500.0, 5.0, 500.0).into_iter());
     assert!((machine.axis(Axis::X).at() - before - 1e6).abs() < 1e-3);
     assert_eq!(machine.lost_pulses().x, lost);
+    // a second stall the same way, and one the other way: the losses add up, the place tells the difference
+    play(&mut machine, Axis::X, true, ramp(30.0, 1250.0, 500.0, 60.0, 500.0).into_iter());
+    let second = machine.lost_pulses().x - lost;
+    assert!(second >= 80);
+    let expected = 24_000.0 + 800.0 + 24_000.0 - (lost + second) as f64;
+    assert!((machine.axis(Axis::X).at() - expected * 1250.0).abs() < 1e-3);
+    play(&mut machine, Axis::X, false, ramp(30.0, 1250.0, 500.0, 60.0, 500.0).into_iter());
+    let third = machine.lost_pulses().x - lost - second;
+    assert!(third >= 80 && third.is_multiple_of(80));
+    assert!((machine.axis(Axis::X).at() - (expected - 24_000.0 + third as f64) * 1250.0).abs() < 1e-3);
 }
 
 #[test]

@@ -94,6 +94,16 @@ fn a_scale_reads_the_slide_and_not_the_screw() {
 }
 
 #[test]
+fn a_scale_shows_the_nearest_of_its_steps() {
+    let set = [("scale.x.fitted", "true"), ("scale.x.error_nm", "0"), ("scale.x.resolution_nm", "500")];
+    let scale = machine::Scale::new(&common::figures(&set), Axis::X).unwrap().unwrap();
+    for nm in -3_000..3_000 {
+        let shown = scale.reading(f64::from(nm));
+        assert!((shown - f64::from(nm)).abs() <= 250.0 && (shown / 500.0).fract().abs() <= 0.0, "{nm}: {shown}");
+    }
+}
+
+#[test]
 fn the_error_of_a_scale_repeats_each_period() {
     let figures = common::figures(&[("scale.x.fitted", "true"), ("scale.x.resolution_nm", "1")]);
     let scale = machine::Scale::new(&figures, Axis::X).unwrap().unwrap();
