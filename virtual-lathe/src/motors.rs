@@ -5,7 +5,7 @@ use std::io;
 use interp_core::channel;
 use interp_core::train::Event;
 use interp_core::units::Axis;
-use machine::{Axes, Loss, Machine};
+use machine::{Axes, Loss, Machine, Place};
 
 use crate::lathe::Observer;
 
@@ -49,6 +49,15 @@ impl Motors {
         Self { machine, x: Losses::default(), z: Losses::default() }
     }
 
+    /// Plays a tick in which `line` was in work; `moved` is told where the slides are at the end of each event.
+    pub fn play(&mut self, events: &[u32], line: u32, moved: &mut impl FnMut(Place)) {
+        for &word in events {
+            moved(self.machine.play(Event::from_word(word)));
+        }
+        self.x.look(&self.machine, Axis::X, line);
+        self.z.look(&self.machine, Axis::Z, line);
+    }
+
     /// The machine.
     #[must_use]
     pub const fn machine(&self) -> &Machine {
@@ -81,11 +90,7 @@ impl Motors {
 
 impl Observer for Motors {
     fn tick(&mut self, events: &[u32], report: &channel::Report) -> io::Result<()> {
-        for &word in events {
-            self.machine.play(Event::from_word(word));
-        }
-        self.x.look(&self.machine, Axis::X, report.line);
-        self.z.look(&self.machine, Axis::Z, report.line);
+        self.play(events, report.line, &mut |_| {});
         Ok(())
     }
 }
