@@ -149,8 +149,7 @@ mod app {
         let interpolate::LocalResources { foreground, train, bench, .. } = cx.local;
         bench.due(foreground.state(), &mut |command| foreground.obey(command));
         let report = foreground.tick(train);
-        let faults =
-            Faults { underruns: train.underruns(), overruns: train.overruns(), late: LATE.load(Relaxed) };
+        let faults = Faults { underruns: train.underruns(), overruns: train.overruns(), late: LATE.load(Relaxed) };
         bench.saw(&report, faults);
         train.publish();
         STATUS.publish(&report, foreground, faults);

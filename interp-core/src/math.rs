@@ -34,7 +34,9 @@ pub const fn root(value: u64) -> u32 {
     let lower = normal as u32;
     let dividend = (rest as u64) << 16 | (lower >> 16) as u64;
     // high is at least 2^15, so the quotient is at most 2^16
-    let half = match ((dividend >> 1) as u32).checked_div(high) {
+    #[expect(clippy::cast_possible_truncation, reason = "below 2^32")]
+    let halved = (dividend >> 1) as u32;
+    let half = match halved.checked_div(high) {
         Some(quotient) => quotient,
         None => 0,
     };

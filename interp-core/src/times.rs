@@ -44,6 +44,7 @@ impl Times {
                 let (low, _) = divided(rest << 8, moved);
                 let spacing = (high << 16).wrapping_add(middle << 8).wrapping_add(low);
                 // first <= moved < 2^24, so the product is below 2^56, and shifted at most the whole stretch
+                #[expect(clippy::cast_possible_truncation, reason = "see above")]
                 let offset = (first.wrapping_mul(u64::from(spacing)) >> 16) as u32;
                 Self { time: begin.wrapping_add(offset), spacing }
             }

@@ -1,5 +1,5 @@
 //! A row of steps is made to the very events that single steps make, from any state of the pins.
-#![allow(clippy::unwrap_used, clippy::arithmetic_side_effects, reason = "a test")]
+#![allow(clippy::unwrap_used, clippy::indexing_slicing, clippy::arithmetic_side_effects, reason = "a test")]
 
 use interp_core::config::{AxisConfig, Config, Machine};
 use interp_core::curve::Step;
@@ -123,7 +123,8 @@ proptest! {
 #[test]
 fn steps_inside_a_tick_come_in_rows() {
     let machine = machine([5000, 5000], 5000, 2000);
-    let run = Run { time: 100 << FRACTION, spacing: 150 << FRACTION, major_x: true, signs: (1, 1), turns: 0x5A5A, count: 79 };
+    let run =
+        Run { time: 100 << FRACTION, spacing: 150 << FRACTION, major_x: true, signs: (1, 1), turns: 0x5A5A, count: 79 };
     let mut shaper = Shaper::new(&machine);
     // the first tick turns the directions
     run.in_rows(&mut shaper, &mut |_: Event| {});

@@ -65,7 +65,8 @@ mod tests {
     fn a_reader_preempted_anywhere_gets_words_of_one_write() {
         for at in 0..6 {
             let published = Published::<3>::new();
-            let write = |value| published.publish(|words| words.iter().for_each(|word| word.store(value, Ordering::Relaxed)));
+            let write =
+                |value| published.publish(|words| words.iter().for_each(|word| word.store(value, Ordering::Relaxed)));
             write(1);
             let mut calls = 0;
             let read = published.read_through(|| {

@@ -28,7 +28,10 @@ impl Strides {
     pub const fn new(straight: Step, diagonal: Step) -> Self {
         Self {
             straight: [straight.x as i32, straight.z as i32],
-            besides: [(diagonal.x as i32).wrapping_sub(straight.x as i32), (diagonal.z as i32).wrapping_sub(straight.z as i32)],
+            besides: [
+                (diagonal.x as i32).wrapping_sub(straight.x as i32),
+                (diagonal.z as i32).wrapping_sub(straight.z as i32),
+            ],
             raised: [raised(straight), raised(diagonal)],
             directions: Levels::LOW.with_plus(Axis::X, diagonal.x != 0).with_plus(Axis::Z, diagonal.z != 0),
             plus: Levels::LOW.with_plus(Axis::X, diagonal.x > 0).with_plus(Axis::Z, diagonal.z > 0),
