@@ -84,7 +84,8 @@ mod index {
     pub(super) const FRONT_POST: usize = 30;
     pub(super) const BLOCK_DELETE: usize = 31;
     pub(super) const START: usize = 32;
-    pub(super) const COUNT: usize = 33;
+    pub(super) const OPTIONAL_STOP: usize = 33;
+    pub(super) const COUNT: usize = 34;
 }
 
 /// All parameters.
@@ -122,6 +123,7 @@ pub static DEFINITIONS: [Definition; index::COUNT] = [
     definition("front_post", "", Kind::Switch, "false", "the tool post is on the operator's side: G2 and G3 change"),
     definition("block_delete", "", Kind::Switch, "true", "lines that begin with / are skipped"),
     definition("start", "mm", Kind::Place, "0,0", "where the tool is when the program starts: X (radius), Z"),
+    definition("optional_stop", "", Kind::Switch, "false", "M1 stops as M0 does"),
 ];
 
 /// A value as held.
@@ -301,6 +303,11 @@ impl Parameters {
     /// Feed override, percent.
     pub fn feed_override(&self) -> u16 {
         u16::try_from(self.number(index::FEED_OVERRIDE)).unwrap_or(100)
+    }
+
+    /// Whether M1 stops.
+    pub fn optional_stop(&self) -> bool {
+        self.switch(index::OPTIONAL_STOP)
     }
 
     /// How far a blend may leave a corner, nm.

@@ -3,6 +3,9 @@
 //! It takes commands and blocks out of two single-producer queues and gives a tick of pulse train. It never waits:
 //! what is not there at a tick's start is taken at the next.
 
+pub mod alarm;
+pub mod heartbeat;
+pub mod outputs;
 pub mod published;
 pub mod rehearsal;
 pub mod train_queue;
@@ -14,6 +17,8 @@ use interp_core::train::Train;
 use interp_core::units::Lattice;
 
 use crate::queue::Consumer;
+use alarm::{Alarm, Faults};
+use outputs::Outputs;
 
 /// Blocks that a lathe looks ahead. The same on every board and on the desktop, since the pulses depend on it.
 pub const LOOKAHEAD: usize = 64;
@@ -31,8 +36,10 @@ pub enum Command {
     Start,
     /// Feed hold.
     Hold,
-    /// Brake, then forget all blocks, those in the queue included.
+    /// Brake, then forget all blocks, those in the queue included. The spindle stops at once.
     Reset,
+    /// Leave an alarm: the operator has seen to it. Without effect while the tool moves or its cause lasts.
+    Unlock,
     /// Feed override, percent, 0 to 200.
     FeedOverride(u16),
     /// Optional stops stop.
@@ -46,6 +53,11 @@ pub enum Command {
 pub struct Foreground<'q> {
     blocks: Consumer<'q, Block>,
     commands: Consumer<'q, Command>,
+    outputs: Outputs,
+    alarm: Option<Alarm>,
+    faults: Faults,
+    /// The emergency input is open.
+    open: bool,
     channel: Channel<LOOKAHEAD>,
 }
 
@@ -57,7 +69,9 @@ impl<'q> Foreground<'q> {
         blocks: Consumer<'q, Block>,
         commands: Consumer<'q, Command>,
     ) -> Self {
-        Self { channel: Channel::new(machine, position), blocks, commands }
+        let channel = Channel::new(machine, position);
+        let (outputs, faults) = (Outputs::REST, Faults::default());
+        Self { channel, blocks, commands, outputs, alarm: None, faults, open: false }
     }
 
     /// Makes one tick of train.
@@ -65,19 +79,64 @@ impl<'q> Foreground<'q> {
         while let Some(command) = self.commands.dequeue() {
             self.obey(command);
         }
+        if self.alarm.is_some() {
+            self.forget();
+        }
         let blocks = &mut self.blocks;
-        self.channel.tick(&mut || blocks.dequeue(), out)
+        let report = self.channel.tick(&mut || blocks.dequeue(), out);
+        self.outputs.follow(report.output, report.state, self.alarm);
+        report
+    }
+
+    /// Looks at what the board has counted so far and whether the emergency input is, or has been, open; to be called
+    /// before each tick. What is new is an alarm.
+    pub fn watch(&mut self, faults: Faults, open: bool) {
+        self.open = open;
+        if let Some(alarm) = faults.alarm_since(self.faults) {
+            self.raise(alarm);
+        }
+        self.faults = faults;
+        if open {
+            self.raise(Alarm::Emergency);
+        }
+    }
+
+    /// Raises an alarm. An earlier one stays, unless this one is an emergency stop.
+    pub fn raise(&mut self, alarm: Alarm) {
+        let emergency = matches!(alarm, Alarm::Emergency);
+        if matches!(self.alarm, Some(Alarm::Emergency)) || self.alarm.is_some() && !emergency {
+            return;
+        }
+        self.alarm = Some(alarm);
+        if emergency {
+            self.channel.abandon();
+        } else {
+            self.channel.reset();
+        }
+        self.forget();
+    }
+
+    /// Forgets the blocks that wait.
+    fn forget(&mut self) {
+        while self.blocks.dequeue().is_some() {}
     }
 
     /// Obeys a command at once; the next tick is the first that shows it.
     pub fn obey(&mut self, command: Command) {
         match command {
             // a start with nothing to start and a hold of nothing are requests without effect, and harmless
+            Command::Start if self.alarm.is_some() => {}
             Command::Start => drop(self.channel.start()),
             Command::Hold => drop(self.channel.hold()),
             Command::Reset => {
                 self.channel.reset();
-                while self.blocks.dequeue().is_some() {}
+                self.forget();
+                self.outputs.spindle = false;
+            }
+            Command::Unlock => {
+                if !self.open && matches!(self.channel.state(), State::Idle | State::Ended) {
+                    self.alarm = None;
+                }
             }
             Command::FeedOverride(percent) => self.channel.set_feed_override(percent),
             Command::OptionalStop(on) => self.channel.set_optional_stop(on),
@@ -93,6 +152,16 @@ impl<'q> Foreground<'q> {
     /// What the lathe is doing.
     pub const fn state(&self) -> State {
         self.channel.state()
+    }
+
+    /// Why the machine is locked. The position is unverified then.
+    pub const fn alarm(&self) -> Option<Alarm> {
+        self.alarm
+    }
+
+    /// What the board's outputs are to be now.
+    pub const fn outputs(&self) -> Outputs {
+        self.outputs
     }
 
     /// Where the last pulse planned leads.

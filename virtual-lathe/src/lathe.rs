@@ -195,6 +195,7 @@ pub fn run(
     let mut foreground = Foreground::new(machine, position, block_out, command_out);
     let full = || io::Error::other("the queue of commands is full");
     command_in.enqueue(Command::FeedOverride(parameters.feed_override())).map_err(|_| full())?;
+    command_in.enqueue(Command::OptionalStop(parameters.optional_stop())).map_err(|_| full())?;
     command_in.enqueue(Command::Start).map_err(|_| full())?;
     let mut events = Vec::with_capacity(1024);
     let mut ticks = 0_u64;

@@ -86,7 +86,8 @@ fn run(listener: &TcpListener, fast: bool, parameters: Parameters, machine: &Mac
     let start = parameters.start();
     let position = Lattice { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) };
     let mut foreground = Foreground::new(machine, position, block_out, command_out);
-    let snapshot = Snapshot { state: State::Idle, position, speed: 0, line: 0, feed_override: 100, underruns: 0 };
+    let snapshot =
+        Snapshot { state: State::Idle, position, speed: 0, line: 0, feed_override: 100, underruns: 0, alarm: None };
     let link = Link::new(parameters, *machine);
     let mut background = Background { link, blocks, commands, snapshot, client: None, heard: Instant::now() };
     let mut cycle = Cycle::new();
@@ -118,6 +119,7 @@ fn run(listener: &TcpListener, fast: bool, parameters: Parameters, machine: &Mac
             feed_override: foreground.feed_override(),
             // nothing plays the train here, so nothing finds it empty
             underruns: 0,
+            alarm: foreground.alarm(),
         };
     }
 }

@@ -64,6 +64,7 @@ pub(crate) fn run(trial: &Trial, most: usize, take: &mut Take<'_>) -> Result<()>
     let (_, command_out) = commands.split();
     let mut foreground = Foreground::new(machine, position, block_out, command_out);
     foreground.obey(Command::FeedOverride(parameters.feed_override()));
+    foreground.obey(Command::OptionalStop(parameters.optional_stop()));
     foreground.obey(Command::Start);
     let mut lines = program.lines.iter();
     let mut ready: VecDeque<Block> = VecDeque::new();

@@ -164,6 +164,13 @@ impl<const N: usize> Channel<N> {
         };
     }
 
+    /// Stops at once, from any speed, and forgets all blocks: for an emergency. The position is that of the last pulse
+    /// planned; where the tool is nobody knows.
+    pub fn abandon(&mut self) {
+        self.speed = 0;
+        self.forget();
+    }
+
     /// Feed hold: brakes along the path to standstill, or does not begin to move. False where nothing runs.
     pub fn hold(&mut self) -> bool {
         let runs = matches!(self.state, State::Running | State::Filling);

@@ -53,7 +53,7 @@ impl Link {
                     self.say(out, format_args!("[VER:1.1h.20190830:HandCNC {}]", env!("CARGO_PKG_VERSION")));
                     self.say(out, format_args!("[OPT:V,{BLOCK_QUEUE},{RECEIVE_BUFFER}]"));
                 }
-                b"X" | b"x" => {}
+                b"X" | b"x" => return self.unlock(idle),
                 b"H" | b"h" => return Err(Refusal::Homing),
                 _ => return Err(Refusal::Command),
             },
@@ -145,6 +145,9 @@ impl Link {
         }
         if name == "feed_override" {
             self.ask_percent(parameters.feed_override());
+        }
+        if name == "optional_stop" {
+            self.outbox.optional_stop = Some(parameters.optional_stop());
         }
         let mut settings = parameters.settings();
         settings.start = at;

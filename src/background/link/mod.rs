@@ -8,7 +8,7 @@
 //!
 //! # Commands
 //! - `? ! ~` and 0x18: status, feed hold, cycle start, soft reset. 0x90 to 0x94: feed override, 10 to 200 %.
-//! - `$`, `$$`, `$G`, `$I`, `$X`: help, parameters, what is modal, version, unlock (nothing is ever locked).
+//! - `$`, `$$`, `$G`, `$I`, `$X`: help, parameters, what is modal, version, unlock.
 //! - `$name=value` sets a parameter; also `$100 $102 $110 $112 $120 $122`, as Grbl numbers them. `$format=nc1973` and
 //!   `$format=gcode` choose how programs are read. Only while idle.
 //! - Anything else is a line of a program. M2, M30 or a closing `%` ends the program; the next begins where the tool is.
@@ -18,6 +18,10 @@
 //! by itself after a pause of its sender. A reset brakes, then forgets all blocks, all lines and all that is modal;
 //! programs go on from where the tool then is. Lines that arrive meanwhile wait, and are read after the banner.
 //!
+//! # Alarms
+//! The foreground latches them and forgets its blocks. The link tells `ALARM:N` once and refuses program lines until `$X`,
+//! as Grbl does; a reset forgets all but the alarm.
+//!
 //! # Invariants
 //! - Answers are one for each terminator, but those that a reset makes pointless.
 //! - Nothing of a refused line moves or stays in force.
@@ -25,10 +29,11 @@
 //! - "Idle" is believed only of a snapshot taken after all commands were obeyed (`Settling`).
 //!
 //! # Left out
-//! Jogging, homing, probing, offsets, check mode; alarms, which the foreground latches.
+//! Jogging, homing, probing, offsets, check mode.
 
 #![cfg_attr(not(test), deny(clippy::arithmetic_side_effects))]
 
+mod alarm;
 mod commands;
 mod outbox;
 mod program;
@@ -50,6 +55,7 @@ use interp_core::config::Machine;
 use super::compile::Compiler;
 use super::parameters::Parameters;
 use crate::foreground::Command;
+use crate::foreground::alarm::Alarm;
 use crate::queue::Producer;
 use outbox::{Outbox, Settling};
 use program::Accessories;
@@ -132,6 +138,10 @@ pub struct Link {
     outbox: Outbox,
     settling: Settling,
     resetting: bool,
+    /// The alarm that was told last and still locks.
+    alarm: Option<Alarm>,
+    /// `$X` waits for its answer.
+    unlocking: bool,
     /// The operator holds: nothing is started.
     held: bool,
     /// The position is one that no program can start from, so none does.
@@ -152,6 +162,7 @@ impl Link {
     pub fn new(parameters: Parameters, machine: Machine) -> Self {
         let format = Format::Gcode;
         let percent = Some(parameters.feed_override());
+        let optional_stop = Some(parameters.optional_stop());
         Self {
             compiler: Compiler::new(parameters.settings(), format, &machine),
             parameters,
@@ -164,9 +175,11 @@ impl Link {
             pending: Deque::new(),
             owes_ok: false,
             listing: None,
-            outbox: Outbox { percent, ..Outbox::default() },
+            outbox: Outbox { percent, optional_stop, ..Outbox::default() },
             settling: Settling::Sent,
             resetting: false,
+            alarm: None,
+            unlocking: false,
             held: false,
             lost: false,
             busy: false,
@@ -181,6 +194,9 @@ impl Link {
     pub fn banner(&mut self, out: &mut impl Write) {
         self.rounds = Rounds::new();
         self.write(out, |out| out.write_str("\r\nGrbl 1.1h ['$' for help]\r\n"));
+        if self.alarm.is_some() {
+            self.message(out, format_args!("'$X' to unlock"));
+        }
     }
 
     /// Takes a byte that is not a real-time one. Bytes must come in the order of the wire; those that came before a
@@ -221,6 +237,7 @@ impl Link {
         let percent = self.percent.unwrap_or(snapshot.feed_override);
         match what {
             Realtime::Status => return self.report(snapshot, out),
+            Realtime::Hold | Realtime::Start if snapshot.alarm.is_some() => return,
             Realtime::Hold => {
                 self.held = true;
                 self.outbox.flow = Some(Command::Hold);
@@ -253,6 +270,9 @@ impl Link {
         out: &mut impl Write,
     ) -> bool {
         self.settle(commands, snapshot);
+        if snapshot.alarm != self.alarm {
+            self.tell_alarm(snapshot, out);
+        }
         self.room = blocks.capacity().saturating_sub(blocks.len());
         let still = self.is_still(snapshot);
         if self.resetting {
@@ -261,6 +281,9 @@ impl Link {
                 self.begin_anew(snapshot, out);
             }
             return over;
+        }
+        if self.unlocking {
+            return self.unlocked(snapshot, out);
         }
         if still && !self.held && !blocks.is_empty() {
             self.outbox.flow = Some(Command::Start);
@@ -272,6 +295,10 @@ impl Link {
         }
         let idle = still && blocks.is_empty();
         self.busy &= !idle;
+        if idle && snapshot.state == State::Ended {
+            // the end of a program stops the spindle
+            self.accessories.spindle = None;
+        }
         if let Some(at) = self.listing {
             self.list(at, out);
             return true;
@@ -343,9 +370,10 @@ impl Link {
     fn obey(&mut self, idle: bool, snapshot: &Snapshot, out: &mut impl Write) -> Result<(), Refusal> {
         let line = core::mem::take(&mut self.line);
         let text = line.trim_ascii();
-        let result = match text.strip_prefix(b"$") {
-            Some(command) => self.command(command, idle && !self.held, snapshot, out),
-            None => self.follow(idle, snapshot).and_then(|()| self.program(&line, out)),
+        let result = match (text.strip_prefix(b"$"), self.alarm) {
+            (Some(command), _) => self.command(command, idle && !self.held, snapshot, out),
+            (None, Some(alarm)) if !text.is_empty() => Err(Refusal::Locked(alarm)),
+            (None, _) => self.follow(idle, snapshot).and_then(|()| self.program(&line, out)),
         };
         self.line = line;
         result
@@ -357,6 +385,8 @@ impl Link {
         self.pending.clear();
         self.owes_ok = false;
         self.listing = None;
+        self.unlocking = false;
+        self.outbox.unlock = false;
         self.held = false;
         self.resetting = true;
         self.outbox.flow = None;
@@ -368,14 +398,19 @@ impl Link {
     /// The reset is over: all is as after power-on, but for the position.
     fn begin_anew(&mut self, snapshot: &Snapshot, out: &mut impl Write) {
         self.resetting = false;
+        self.start_over(snapshot);
+        self.ask_percent(self.parameters.feed_override());
+        self.banner(out);
+    }
+
+    /// Forgets what is modal; programs begin where the tool is.
+    fn start_over(&mut self, snapshot: &Snapshot) {
         self.busy = false;
         self.begun = false;
         self.accessories = Accessories::default();
         let at = self.present(&self.machine, snapshot);
         self.lost = at.is_none();
         self.compiler = self.fresh(at.unwrap_or_default());
-        self.ask_percent(self.parameters.feed_override());
-        self.banner(out);
     }
 
     fn scale_feed(&mut self, percent: u16) {

@@ -24,7 +24,10 @@ pub(super) enum Settling {
 pub(super) struct Outbox {
     pub(super) reset: bool,
     pub(super) machine: Option<Machine>,
+    /// Leave the alarm.
+    pub(super) unlock: bool,
     pub(super) percent: Option<u16>,
+    pub(super) optional_stop: Option<bool>,
     /// Hold or start.
     pub(super) flow: Option<Command>,
 }
@@ -42,7 +45,9 @@ impl Outbox {
                 Command::Reset => self.reset = false,
                 Command::Configure(_) => self.machine = None,
                 Command::FeedOverride(_) => self.percent = None,
-                Command::Start | Command::Hold | Command::OptionalStop(_) => self.flow = None,
+                Command::Unlock => self.unlock = false,
+                Command::OptionalStop(_) => self.optional_stop = None,
+                Command::Start | Command::Hold => self.flow = None,
             }
         }
         any
@@ -52,6 +57,9 @@ impl Outbox {
     fn first(&self) -> Option<Command> {
         let reset = self.reset.then_some(Command::Reset);
         let machine = self.machine.map(Command::Configure);
-        reset.or(machine).or(self.percent.map(Command::FeedOverride)).or(self.flow)
+        let unlock = self.unlock.then_some(Command::Unlock);
+        let percent = self.percent.map(Command::FeedOverride);
+        let optional_stop = self.optional_stop.map(Command::OptionalStop);
+        reset.or(machine).or(unlock).or(percent).or(optional_stop).or(self.flow)
     }
 }

@@ -9,7 +9,6 @@
 //! | 202 | comment without its end |
 //! | 203 | an O word that is not the first of its line |
 //! | 204 | the tool is past 2.1 m from zero, where no program can start |
-//! | 205 | what only a whole program can be refused for |
 
 use core::fmt;
 
@@ -18,6 +17,7 @@ use interp_core::config::ConfigError;
 
 use crate::background::compile::Finding;
 use crate::background::parameters::ParameterError;
+use crate::foreground::alarm::Alarm;
 
 /// Why a line was refused. A refusal changes nothing.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -30,6 +30,10 @@ pub(super) enum Refusal {
     Overflow(u32),
     /// Bytes were lost or garbled.
     Damaged,
+    /// An alarm locks the machine.
+    Locked(Alarm),
+    /// The cause of an alarm is still there.
+    Lasting(Alarm),
     /// It needs an idle machine.
     NotIdle,
     /// No such `$` command.
@@ -58,6 +62,8 @@ impl Refusal {
             Self::Overflow(_) => 200,
             Self::Damaged => 201,
             Self::NotIdle => 8,
+            Self::Locked(_) => 9,
+            Self::Lasting(_) => 50,
             Self::Command | Self::Parameter(ParameterError::Unknown) => 3,
             Self::Homing => 5,
             Self::Number | Self::Parameter(ParameterError::Malformed(_)) => 2,
@@ -120,11 +126,10 @@ const fn of_text(kind: &DiagnosticKind) -> u8 {
         K::SpindleSpeed(_) => 44,
         // words that exclude each other
         K::AbsoluteAndIncremental { .. } | K::CentreAndRadius { .. } => 48,
-        // program demarcation
-        K::TextAfterPercent => 57,
+        // program demarcation; the last two are of a whole program, which the link never checks
+        K::TextAfterPercent | K::Empty | K::EndCodeMissing => 57,
         K::CommentOpen => 202,
         K::ProgramNumberPlace(_) => 203,
-        K::Empty | K::EndCodeMissing => 205,
     }
 }
 
@@ -146,6 +151,8 @@ impl fmt::Display for Refusal {
                 write!(f, "line lost: the receive buffer was full, {bytes} bytes lost since power-on")
             }
             Self::Damaged => f.write_str("line lost: bytes of it did not arrive whole"),
+            Self::Locked(alarm) => write!(f, "locked: {alarm}; check the position, then $X unlocks"),
+            Self::Lasting(alarm) => write!(f, "still there: {alarm}; release it, then $X"),
             Self::NotIdle => f.write_str("only while the machine is idle"),
             Self::Command => f.write_str("there is no such command; $ lists them"),
             Self::Homing => f.write_str("there are no homing switches"),

@@ -10,6 +10,8 @@ use interp_core::channel::State;
 use interp_core::config::Machine;
 use interp_core::units::Lattice;
 
+use crate::foreground::alarm::Alarm;
+
 use super::reply::{micrometres, scaled};
 
 /// What the foreground shows of itself. It is taken after a tick of the foreground and before the link is called.
@@ -27,6 +29,8 @@ pub struct Snapshot {
     pub feed_override: u16,
     /// How often the pulse train was found empty.
     pub underruns: u32,
+    /// Why the machine is locked.
+    pub alarm: Option<Alarm>,
 }
 
 /// Reports between two that show the offset, idle and busy, and between two that show the overrides.
@@ -93,7 +97,11 @@ impl Rounds {
         let z = micrometres(machine.z.pulse, snapshot.position.z);
         // nm a tick with 12 fraction bits to mm/min: * 60000 / 4096 / 1e6
         let feed = scaled(snapshot.speed.into(), 60, 4_096_000);
-        write!(out, "<{name}|MPos:{x},0.000,{z}|Bf:{},{}", known.blocks, known.bytes)?;
+        match snapshot.alarm {
+            Some(alarm) => write!(out, "<Alarm:{}", alarm.number())?,
+            None => write!(out, "<{name}")?,
+        }
+        write!(out, "|MPos:{x},0.000,{z}|Bf:{},{}", known.blocks, known.bytes)?;
         if snapshot.line > 0 {
             write!(out, "|Ln:{}", snapshot.line)?;
         }

@@ -2,6 +2,7 @@
 
 extern crate std;
 
+mod alarms;
 mod commands;
 mod hostile;
 mod lines;
@@ -9,6 +10,7 @@ mod realtime_bytes;
 mod streams;
 
 use super::*;
+use crate::foreground::alarm::Faults;
 use crate::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Foreground};
 use crate::queue::Queue;
 use interp_core::train::{Event, Hash};
@@ -32,6 +34,10 @@ struct Bench {
     blocks: Producer<'static, Block>,
     commands: Producer<'static, Command>,
     snapshot: Snapshot,
+    /// What the board counted.
+    faults: Faults,
+    /// The emergency input is open.
+    open: bool,
     /// What came back.
     out: String,
     hash: Hash,
@@ -55,13 +61,16 @@ impl Bench {
         let position = Lattice { x: pulse.0.nearest(start.x), z: pulse.1.nearest(start.z) };
         let (blocks, block_out) = Box::leak(Box::new(Queue::<Block, BLOCK_QUEUE>::new())).split();
         let (commands, command_out) = Box::leak(Box::new(Queue::<Command, COMMAND_QUEUE>::new())).split();
-        let snapshot = Snapshot { state: State::Idle, position, speed: 0, line: 0, feed_override: 100, underruns: 0 };
+        let snapshot =
+            Snapshot { state: State::Idle, position, speed: 0, line: 0, feed_override: 100, underruns: 0, alarm: None };
         Self {
             link: Link::new(parameters, machine),
             foreground: Foreground::new(&machine, position, block_out, command_out),
             blocks,
             commands,
             snapshot,
+            faults: Faults::default(),
+            open: false,
             out: String::new(),
             hash: Hash::new(),
             ticks: 0,
@@ -70,6 +79,16 @@ impl Bench {
             pulses: 0,
             train: Train { hash: Hash::new().value(), ticks: 0, pulses: 0 },
         }
+    }
+
+    /// A long motion, well under way.
+    fn under_way() -> Self {
+        let mut bench = Self::new();
+        bench.ask("G1 X50 Z50 F1000\nX0 Z0\nM30\n");
+        bench.ticks(1_000);
+        assert!(bench.status().starts_with("Run|"));
+        bench.out.clear();
+        bench
     }
 
     /// Puts bytes on the wire.
@@ -95,6 +114,7 @@ impl Bench {
     fn tick(&mut self) {
         self.work();
         let mut events = Vec::new();
+        self.foreground.watch(self.faults, self.open);
         let report = self.foreground.tick(&mut |event: Event| events.push(event));
         let before = self.pulses;
         events.iter().for_each(|event| self.play(*event));
@@ -112,6 +132,7 @@ impl Bench {
             line: report.line,
             feed_override: self.foreground.feed_override(),
             underruns: 0,
+            alarm: self.foreground.alarm(),
         };
     }
 

@@ -2,16 +2,6 @@
 
 use super::*;
 
-/// A long motion, well under way.
-fn under_way() -> Bench {
-    let mut bench = Bench::new();
-    bench.ask("G1 X50 Z50 F1000\nX0 Z0\nM30\n");
-    bench.ticks(1_000);
-    assert!(bench.status().starts_with("Run|"));
-    bench.out.clear();
-    bench
-}
-
 #[test]
 fn the_banner_and_the_reports_follow_grbl() {
     let mut bench = Bench::with(&[("start", "12.5,-3")]);
@@ -46,7 +36,7 @@ fn a_report_in_motion_shows_line_feed_and_spindle() {
 
 #[test]
 fn hold_brakes_and_start_goes_on_to_the_same_end() {
-    let mut bench = under_way();
+    let mut bench = Bench::under_way();
     bench.send("!");
     bench.tick();
     bench.tick();
@@ -100,7 +90,7 @@ fn a_programmed_stop_waits_for_start() {
 
 #[test]
 fn a_reset_brakes_forgets_and_goes_on_from_where_the_tool_is() {
-    let mut bench = under_way();
+    let mut bench = Bench::under_way();
     bench.send("G0 X9\nG0 X1\x18G91\nG0 X1.25\nG0");
     bench.tick();
     bench.work();
@@ -135,7 +125,7 @@ fn a_reset_at_rest_answers_with_the_banner_and_keeps_the_programmed_place() {
 
 #[test]
 fn resets_come_through_a_full_queue_of_commands_and_repeat_harmlessly() {
-    let mut bench = under_way();
+    let mut bench = Bench::under_way();
     bench.send("!~!~!~!~!~!~!~!~!~\x18!~!~\x18");
     bench.ticks(1_000);
     assert_eq!(bench.out.matches("Grbl").count(), 1);
@@ -145,7 +135,7 @@ fn resets_come_through_a_full_queue_of_commands_and_repeat_harmlessly() {
 
 #[test]
 fn the_override_is_set_in_steps_within_its_range() {
-    let mut bench = under_way();
+    let mut bench = Bench::under_way();
     let show = |bench: &mut Bench, bytes: &[u8]| {
         bench.send(bytes);
         bench.ticks(3);

@@ -1,0 +1,31 @@
+//! Outputs besides the steps: motor drivers and spindle.
+
+use super::alarm::Alarm;
+use interp_core::block::Output;
+use interp_core::channel::State;
+
+/// What the board's outputs are to be.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Outputs {
+    /// Motor drivers are on.
+    pub motors: bool,
+    /// The spindle turns forward. A board has one pin for it and none for the sense, so a reverse leaves it off.
+    pub spindle: bool,
+}
+
+impl Outputs {
+    /// At power-on: motors hold, the spindle stands.
+    pub(super) const REST: Self = Self { motors: true, spindle: false };
+
+    /// After a tick in which the program set `output` and that left the channel in `state`: the end of a program and an
+    /// alarm switch the spindle off, an emergency stop the motors, too.
+    pub(super) const fn follow(&mut self, output: Option<Output>, state: State, alarm: Option<Alarm>) {
+        match output {
+            Some(Output::SpindleForward) => self.spindle = true,
+            Some(Output::SpindleReverse | Output::SpindleStop) => self.spindle = false,
+            Some(Output::SpindleSpeed(_) | Output::Tool(..)) | None => {}
+        }
+        self.spindle &= !matches!(state, State::Ended) && alarm.is_none();
+        self.motors = !matches!(alarm, Some(Alarm::Emergency));
+    }
+}
