@@ -31,7 +31,9 @@ mod app {
 
     use handcnc::background::inbox::{Inbox, LOST};
     use handcnc::background::link::{Link, Realtime};
-    use handcnc::background::status::{Faults, Status};
+    use handcnc::background::status::Status;
+    use handcnc::foreground::alarm::{Alarm, Faults};
+    use handcnc::foreground::heartbeat::Heartbeat;
     use handcnc::foreground::train_queue::{Player, TrainQueue, Writer};
     use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
     use handcnc::queue::{Consumer, Producer, Queue};
@@ -39,7 +41,9 @@ mod app {
     use interp_core::units::Lattice;
     use stm32f4xx_hal::pac::Interrupt;
 
-    use crate::board::{self, Bench, Board, Drives, EmergencyInput, Receiver, Sender, StepPort, StepTimer};
+    use crate::board::{
+        self, Bench, Board, Contact, Drives, EmergencyInput, Receiver, Sender, StepPort, StepTimer, Watchdog,
+    };
 
     /// Bytes on their way to the link: what a sender may have under way.
     const BYTES: usize = 256;
@@ -49,6 +53,10 @@ mod app {
     static STATUS: Status = Status::new();
     static LATE: AtomicU32 = AtomicU32::new(0);
     static HUNGRY: AtomicBool = AtomicBool::new(true);
+    /// The emergency input has opened since the last tick.
+    static STRUCK: AtomicBool = AtomicBool::new(false);
+    /// The background has run since the last tick.
+    static ALIVE: AtomicBool = AtomicBool::new(true);
 
     /// What `pulse` needs, side by side, so that few instructions find it.
     struct Steps {
@@ -62,11 +70,15 @@ mod app {
 
     #[local]
     struct Local {
-        drives: Drives,
         emergency: EmergencyInput,
+        switch: Drives,
         steps: Steps,
         foreground: Foreground<'static>,
         train: Writer<'static>,
+        contact: Contact,
+        drives: Drives,
+        watchdog: Watchdog,
+        heartbeat: Heartbeat,
         bench: Bench,
         receiver: Receiver,
         inbox: Inbox<'static>,
@@ -86,8 +98,8 @@ mod app {
         commands_queue: Queue<Command, COMMAND_QUEUE> = Queue::new(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let Board { timer, port, mut drives, emergency, receiver, mut sender, bench, parameters } =
-            board::setup(cx.device);
+        let have = board::setup(cx.device);
+        let Board { parameters, mut sender, drives, .. } = have;
         let Ok(machine) = parameters.machine() else { board::safe() };
         let (train, player) = cx.local.train_queue.split();
         let (bytes_in, bytes) = cx.local.bytes_queue.split();
@@ -98,21 +110,27 @@ mod app {
         let position = Lattice { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) };
         let mut foreground = Foreground::new(&machine, position, blocks_out, commands_out);
         foreground.obey(Command::FeedOverride(parameters.feed_override()));
+        if have.restarted {
+            foreground.raise(Alarm::Watchdog);
+        }
         let mut link = Link::new(parameters, machine);
         link.banner(&mut sender);
-        drives.enable();
         rtic::pend(Interrupt::I2C3_ER); // the first tick, played while the second is made
         let inbox = Inbox::new(bytes_in, realtime_in);
         (
             Shared {},
             Local {
-                drives,
-                emergency,
-                steps: Steps { player, timer, port },
+                emergency: have.emergency,
+                switch: drives,
+                steps: Steps { player, timer: have.timer, port: have.port },
                 foreground,
                 train,
-                bench,
-                receiver,
+                contact: have.contact,
+                drives,
+                watchdog: have.watchdog,
+                heartbeat: Heartbeat::new(),
+                bench: have.bench,
+                receiver: have.receiver,
                 inbox,
                 link,
                 sender,
@@ -124,10 +142,11 @@ mod app {
         )
     }
 
-    /// Everything off; the train stops and the position is unverified from now on.
-    #[task(binds = EXTI15_10, priority = 5, local = [drives, emergency])]
+    /// Everything off, and no step leaves the chip; the next tick raises the alarm.
+    #[task(binds = EXTI15_10, priority = 5, local = [emergency, switch])]
     fn emergency(cx: emergency::Context) {
-        cx.local.drives.off();
+        cx.local.switch.off();
+        STRUCK.store(true, Relaxed);
         cx.local.emergency.acknowledge();
     }
 
@@ -144,14 +163,23 @@ mod app {
     }
 
     /// Makes the tick after the one being played.
-    #[task(binds = I2C3_ER, priority = 3, local = [foreground, train, bench])]
+    #[task(binds = I2C3_ER, priority = 3, local = [foreground, train, contact, drives, watchdog, heartbeat, bench])]
     fn interpolate(cx: interpolate::Context) {
-        let interpolate::LocalResources { foreground, train, bench, .. } = cx.local;
+        let interpolate::LocalResources { foreground, train, contact, drives, watchdog, heartbeat, bench, .. } =
+            cx.local;
+        let faults = Faults { underruns: train.underruns(), overruns: train.overruns(), late: LATE.load(Relaxed) };
+        foreground.watch(faults, STRUCK.swap(false, Relaxed) || contact.is_open());
         bench.due(foreground.state(), &mut |command| foreground.obey(command));
         let report = foreground.tick(train);
-        let faults = Faults { underruns: train.underruns(), overruns: train.overruns(), late: LATE.load(Relaxed) };
-        bench.saw(&report, faults);
         train.publish();
+        drives.follow(foreground.outputs());
+        if STRUCK.load(Relaxed) {
+            drives.off(); // the emergency task came between
+        }
+        if heartbeat.beat(ALIVE.swap(false, Relaxed), report.speed) {
+            watchdog.feed();
+        }
+        bench.saw(&report, faults);
         STATUS.publish(&report, foreground, faults);
         HUNGRY.store(foreground.is_hungry(), Relaxed);
         rtic::pend(Interrupt::I2C3_EV);
@@ -170,6 +198,7 @@ mod app {
     #[task(binds = I2C3_EV, priority = 1, local = [link, sender, bytes, realtime, blocks, commands])]
     fn edit(cx: edit::Context) {
         let edit::LocalResources { link, sender, bytes, realtime, blocks, commands, .. } = cx.local;
+        ALIVE.store(true, Relaxed);
         #[cfg(feature = "planted-panic")]
         board::plant();
         loop {

@@ -1,16 +1,95 @@
-//! What real chips share: the step timer, the step port, the emergency input.
+//! What real chips share: all but the pins and the clock, which a board's own module gives.
 
-use handcnc::background::status::Faults;
 use handcnc::foreground::Command;
+use handcnc::foreground::alarm::Faults;
 use interp_core::channel::{Report, State};
 use interp_core::train::Levels;
-use stm32f4xx_hal::gpio::{AnyPin, Edge, ExtiPin, Input};
-use stm32f4xx_hal::pac::{EXTI, TIM5};
+use stm32f4xx_hal::gpio::alt::SerialAsync as CommonPins;
+use stm32f4xx_hal::gpio::{ExtiPin, PushPull};
+use stm32f4xx_hal::pac::{EXTI, IWDG, RCC, SYSCFG, TIM5, USART2};
+use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
-use stm32f4xx_hal::syscfg::SysCfg;
+use stm32f4xx_hal::watchdog::IndependentWatchdog;
+
+use super::pins::{Contact, Drives, EmergencyInput, StepPort};
+use super::this::TIMER_DIVIDER;
+use super::{Board, link_port};
 
 /// Pins of one lathe: X step, X direction, Z step, Z direction.
-pub(crate) const LATHE_PINS: u32 = 0xF;
+const LATHE_PINS: u32 = 0xF;
+
+/// How long the watchdog waits, milliseconds of its own clock, which runs at 0.53 to 1.5 times its nominal rate.
+const WATCHDOG_MS: u32 = 250;
+
+/// Devices that every board uses, besides its pins.
+pub(crate) struct Devices<L> {
+    pub(crate) syscfg: SYSCFG,
+    pub(crate) exti: EXTI,
+    pub(crate) timer: TIM5,
+    pub(crate) watchdog: IWDG,
+    pub(crate) usart: USART2,
+    /// The link's pins: transmit, receive.
+    pub(crate) link: L,
+}
+
+/// Sets up what the boards have in common. `restarted`: see [`was_restarted`].
+pub(crate) fn board<T, R>(
+    devices: Devices<(T, R)>,
+    steps: StepPort,
+    drives: Drives,
+    mut contact: impl ExtiPin,
+    restarted: bool,
+    rcc: &mut Rcc,
+) -> Board
+where
+    T: Into<<USART2 as CommonPins>::Tx<PushPull>>,
+    R: Into<<USART2 as CommonPins>::Rx<PushPull>>,
+{
+    let Devices { syscfg, mut exti, timer, watchdog, usart, link } = devices;
+    let mut syscfg = syscfg.constrain(rcc);
+    contact.make_interrupt_source(&mut syscfg);
+    contact.trigger_on_edge(&mut exti, stm32f4xx_hal::gpio::Edge::Rising);
+    contact.enable_interrupt(&mut exti);
+    let (receiver, sender) = link_port::open(usart, link, rcc);
+    let timer = StepTimer::start(timer, TIMER_DIVIDER, rcc);
+    Board {
+        timer,
+        port: steps,
+        drives,
+        emergency: EmergencyInput,
+        contact: Contact,
+        receiver,
+        sender,
+        watchdog: Watchdog::start(watchdog),
+        bench: Bench,
+        restarted,
+        parameters: handcnc::background::parameters::Parameters::new(),
+    }
+}
+
+/// Whether the watchdog has restarted the chip. Forgets why it was started.
+pub(crate) fn was_restarted(rcc: &RCC) -> bool {
+    let restarted = rcc.csr().read().wdgrstf().bit_is_set();
+    rcc.csr().modify(|_, w| w.rmvf().set_bit());
+    restarted
+}
+
+/// Restarts the chip unless it is fed.
+pub(crate) struct Watchdog(IndependentWatchdog);
+
+impl Watchdog {
+    fn start(device: IWDG) -> Self {
+        let mut watchdog = IndependentWatchdog::new(device);
+        watchdog.start(WATCHDOG_MS.millis());
+        Self(watchdog)
+    }
+
+    /// Feeds it.
+    #[inline]
+    pub(crate) fn feed(&mut self) {
+        self.0.feed();
+    }
+}
 
 /// TIM5 as the train's clock, 12 MHz.
 ///
@@ -64,36 +143,20 @@ impl StepTimer {
     }
 }
 
-/// Stops the train: no event after this one.
-pub(crate) fn stop_train() {
-    // SAFETY: one write that stops the counter; whatever the owner of the timer does next starts nothing.
-    #[allow(unsafe_code, reason = "an emergency stops a timer that another task owns")]
-    unsafe { &*TIM5::ptr() }.cr1().write(|w| w.cen().clear_bit());
-}
-
-/// Level of the emergency input: a normally closed contact to ground, so that a broken wire stops, too.
-pub(crate) struct EmergencyInput(AnyPin<Input>);
-
-impl EmergencyInput {
-    /// Interrupts when the contact opens.
-    pub(crate) fn new(mut pin: AnyPin<Input>, syscfg: &mut SysCfg, exti: &mut EXTI) -> Self {
-        pin.make_interrupt_source(syscfg);
-        pin.trigger_on_edge(exti, Edge::Rising);
-        pin.enable_interrupt(exti);
-        Self(pin)
-    }
-
-    /// Takes the interrupt.
-    pub(crate) fn acknowledge(&mut self) {
-        self.0.clear_interrupt_pending_bit();
-    }
-}
-
 /// Values of BSRR for the levels of the lathe whose first pin is `first`: one write sets and clears all four.
 #[inline]
 pub(crate) const fn set_and_clear(levels: Levels, first: u32) -> u32 {
     let set = levels.bits() as u32 & LATHE_PINS;
     (set | (set ^ LATHE_PINS) << 16) << first
+}
+
+/// Where a fault ends: all off, until the watchdog restarts the chip.
+pub(crate) fn safe() -> ! {
+    cortex_m::interrupt::disable();
+    Drives.off();
+    loop {
+        cortex_m::asm::nop();
+    }
 }
 
 /// A real machine has no test bench.

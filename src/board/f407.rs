@@ -15,106 +15,45 @@
 //!
 //! Clock: 168 MHz; the timers of APB1 run at 84 MHz, and 84 / 7 = 12.
 
-use handcnc::background::parameters::Parameters;
-use interp_core::train::Event;
-use stm32f4xx_hal::gpio::{Output, Pin, PinState, Speed};
-use stm32f4xx_hal::pac::{self, Peripherals};
+use stm32f4xx_hal::gpio::Pin;
+use stm32f4xx_hal::pac::Peripherals;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Config;
 
-use super::{Board, chip, link_port};
-
-pub(crate) use super::chip::{Bench, EmergencyInput, StepTimer, sleep};
+use super::Board;
+use super::chip::{self, Devices};
+use super::pins::{Drives, StepPort};
 
 /// First of the four step and direction pins.
-const FIRST: u32 = 7;
+pub(crate) type XStep = Pin<'E', 7>;
+/// Switches the motor drivers on.
+pub(crate) type Motors = Pin<'D', 4>;
+/// Switches the spindle on.
+pub(crate) type Spindle = Pin<'B', 0>;
+/// The emergency input.
+pub(crate) type Contact = Pin<'E', 12>;
 
 /// Clock of TIM5, in units of the train's 12 MHz.
-const TIMER_DIVIDER: u16 = 7;
+pub(crate) const TIMER_DIVIDER: u16 = 7;
 
 /// Sets the board up; every output is at rest.
 pub(crate) fn setup(dp: Peripherals) -> Board {
-    let mut rcc = dp.RCC.freeze(Config::hse(8.MHz()).sysclk(168.MHz()).pclk1(42.MHz()).pclk2(84.MHz()));
+    let restarted = chip::was_restarted(&dp.RCC);
+    let clocks = Config::hse(8.MHz()).sysclk(168.MHz()).pclk1(42.MHz()).pclk2(84.MHz());
+    let mut rcc = dp.RCC.freeze(clocks);
     let gpiob = dp.GPIOB.split(&mut rcc);
     let gpiod = dp.GPIOD.split(&mut rcc);
     let gpioe = dp.GPIOE.split(&mut rcc);
-    let pins = (
-        gpioe.pe7.into_push_pull_output_in_state(PinState::Low).speed(Speed::High),
-        gpioe.pe8.into_push_pull_output_in_state(PinState::Low).speed(Speed::High),
-        gpioe.pe9.into_push_pull_output_in_state(PinState::Low).speed(Speed::High),
-        gpioe.pe10.into_push_pull_output_in_state(PinState::Low).speed(Speed::High),
-    );
-    let drives = Drives {
-        motors: gpiod.pd4.into_push_pull_output_in_state(PinState::Low),
-        spindle: gpiob.pb0.into_push_pull_output_in_state(PinState::Low),
+    let steps = StepPort::new(gpioe.pe7, gpioe.pe8, gpioe.pe9, gpioe.pe10);
+    let drives = Drives::new(gpiod.pd4, gpiob.pb0);
+    let contact: Contact = gpioe.pe12.into_pull_up_input();
+    let devices = Devices {
+        syscfg: dp.SYSCFG,
+        exti: dp.EXTI,
+        timer: dp.TIM5,
+        watchdog: dp.IWDG,
+        usart: dp.USART2,
+        link: (gpiod.pd5, gpiod.pd6),
     };
-    let mut syscfg = dp.SYSCFG.constrain(&mut rcc);
-    let mut exti = dp.EXTI;
-    let contact = gpioe.pe12.into_pull_up_input().erase();
-    let emergency = EmergencyInput::new(contact, &mut syscfg, &mut exti);
-    let (receiver, sender) = link_port::open(dp.USART2, (gpiod.pd5, gpiod.pd6), &mut rcc);
-    let timer = StepTimer::start(dp.TIM5, TIMER_DIVIDER, &mut rcc);
-    Board {
-        timer,
-        port: StepPort { _pins: pins },
-        drives,
-        emergency,
-        receiver,
-        sender,
-        bench: Bench,
-        parameters: Parameters::new(),
-    }
-}
-
-/// The step and direction pins.
-pub(crate) struct StepPort {
-    _pins: StepPins,
-}
-
-type StepPins = (Pin<'E', 7, Output>, Pin<'E', 8, Output>, Pin<'E', 9, Output>, Pin<'E', 10, Output>);
-
-impl StepPort {
-    /// Sets all four pins in one write.
-    #[inline]
-    pub(crate) fn write(&mut self, event: Event) {
-        let word = chip::set_and_clear(event.levels(), FIRST);
-        // SAFETY: BSRR changes only the pins that it names, and those are owned here; the write is atomic.
-        #[allow(unsafe_code, reason = "the HAL sets pins one by one")]
-        unsafe { &*pac::GPIOE::ptr() }.bsrr().write(|w| unsafe { w.bits(word) });
-    }
-}
-
-/// Enable pins of motor drivers and spindle: high is on.
-pub(crate) struct Drives {
-    motors: Pin<'D', 4, Output>,
-    spindle: Pin<'B', 0, Output>,
-}
-
-impl Drives {
-    /// Motors on; the spindle is not driven yet.
-    pub(crate) fn enable(&mut self) {
-        self.motors.set_high();
-    }
-
-    /// All off, and no further step.
-    pub(crate) fn off(&mut self) {
-        self.motors.set_low();
-        self.spindle.set_low();
-        chip::stop_train();
-    }
-}
-
-/// Where a fault ends: all off, for ever.
-pub(crate) fn safe() -> ! {
-    cortex_m::interrupt::disable();
-    chip::stop_train();
-    // SAFETY: interrupts are off and nothing runs any more but this; the writes only switch outputs off.
-    #[allow(unsafe_code, reason = "the owner of the pins may be damaged")]
-    unsafe {
-        (*pac::GPIOD::ptr()).bsrr().write(|w| w.br4().set_bit());
-        (*pac::GPIOB::ptr()).bsrr().write(|w| w.br0().set_bit());
-    }
-    loop {
-        cortex_m::asm::wfi();
-    }
+    chip::board(devices, steps, drives, contact, restarted, &mut rcc)
 }

@@ -16,106 +16,44 @@
 //! Clock: 168 MHz, not 180: the step timer is TIM5 on every board, on APB1 at twice the bus, and 84 / 7 = 12 while
 //! 90 MHz has no whole divider.
 
-use handcnc::background::parameters::Parameters;
-use interp_core::train::Event;
-use stm32f4xx_hal::gpio::{Output, Pin, PinState, Speed};
-use stm32f4xx_hal::pac::{self, Peripherals};
+use stm32f4xx_hal::gpio::Pin;
+use stm32f4xx_hal::pac::Peripherals;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Config;
 
-use super::{Board, chip, link_port};
-
-pub(crate) use super::chip::{Bench, EmergencyInput, StepTimer, sleep};
+use super::Board;
+use super::chip::{self, Devices};
+use super::pins::{Drives, StepPort};
 
 /// First of the four step and direction pins.
-const FIRST: u32 = 0;
+pub(crate) type XStep = Pin<'C', 0>;
+/// Switches the motor drivers on.
+pub(crate) type Motors = Pin<'A', 9>;
+/// Switches the spindle on.
+pub(crate) type Spindle = Pin<'A', 6>;
+/// The emergency input.
+pub(crate) type Contact = Pin<'C', 10>;
 
 /// Clock of TIM5, in units of the train's 12 MHz.
-const TIMER_DIVIDER: u16 = 7;
+pub(crate) const TIMER_DIVIDER: u16 = 7;
 
 /// Sets the board up; every output is at rest.
 pub(crate) fn setup(dp: Peripherals) -> Board {
-    let mut rcc =
-        dp.RCC.freeze(Config::hse(8.MHz()).bypass_hse_oscillator().sysclk(168.MHz()).pclk1(42.MHz()).pclk2(84.MHz()));
+    let restarted = chip::was_restarted(&dp.RCC);
+    let clocks = Config::hse(8.MHz()).bypass_hse_oscillator().sysclk(168.MHz()).pclk1(42.MHz()).pclk2(84.MHz());
+    let mut rcc = dp.RCC.freeze(clocks);
     let gpioa = dp.GPIOA.split(&mut rcc);
     let gpioc = dp.GPIOC.split(&mut rcc);
-    let pins = (
-        gpioc.pc0.into_push_pull_output_in_state(PinState::Low).speed(Speed::High),
-        gpioc.pc1.into_push_pull_output_in_state(PinState::Low).speed(Speed::High),
-        gpioc.pc2.into_push_pull_output_in_state(PinState::Low).speed(Speed::High),
-        gpioc.pc3.into_push_pull_output_in_state(PinState::Low).speed(Speed::High),
-    );
-    let drives = Drives {
-        motors: gpioa.pa9.into_push_pull_output_in_state(PinState::Low),
-        spindle: gpioa.pa6.into_push_pull_output_in_state(PinState::Low),
+    let steps = StepPort::new(gpioc.pc0, gpioc.pc1, gpioc.pc2, gpioc.pc3);
+    let drives = Drives::new(gpioa.pa9, gpioa.pa6);
+    let contact: Contact = gpioc.pc10.into_pull_up_input();
+    let devices = Devices {
+        syscfg: dp.SYSCFG,
+        exti: dp.EXTI,
+        timer: dp.TIM5,
+        watchdog: dp.IWDG,
+        usart: dp.USART2,
+        link: (gpioa.pa2, gpioa.pa3),
     };
-    let mut syscfg = dp.SYSCFG.constrain(&mut rcc);
-    let mut exti = dp.EXTI;
-    let contact = gpioc.pc10.into_pull_up_input().erase();
-    let emergency = EmergencyInput::new(contact, &mut syscfg, &mut exti);
-    let (receiver, sender) = link_port::open(dp.USART2, (gpioa.pa2, gpioa.pa3), &mut rcc);
-    let timer = StepTimer::start(dp.TIM5, TIMER_DIVIDER, &mut rcc);
-    Board {
-        timer,
-        port: StepPort { _pins: pins },
-        drives,
-        emergency,
-        receiver,
-        sender,
-        bench: Bench,
-        parameters: Parameters::new(),
-    }
-}
-
-/// The step and direction pins.
-pub(crate) struct StepPort {
-    _pins: StepPins,
-}
-
-type StepPins = (Pin<'C', 0, Output>, Pin<'C', 1, Output>, Pin<'C', 2, Output>, Pin<'C', 3, Output>);
-
-impl StepPort {
-    /// Sets all four pins in one write.
-    #[inline]
-    pub(crate) fn write(&mut self, event: Event) {
-        let word = chip::set_and_clear(event.levels(), FIRST);
-        // SAFETY: BSRR changes only the pins that it names, and those are owned here; the write is atomic.
-        #[allow(unsafe_code, reason = "the HAL sets pins one by one")]
-        unsafe { &*pac::GPIOC::ptr() }.bsrr().write(|w| unsafe { w.bits(word) });
-    }
-}
-
-/// Enable pins of motor drivers and spindle: high is on.
-pub(crate) struct Drives {
-    motors: Pin<'A', 9, Output>,
-    spindle: Pin<'A', 6, Output>,
-}
-
-impl Drives {
-    /// Motors on; the spindle is not driven yet.
-    pub(crate) fn enable(&mut self) {
-        self.motors.set_high();
-    }
-
-    /// All off, and no further step.
-    pub(crate) fn off(&mut self) {
-        self.motors.set_low();
-        self.spindle.set_low();
-        chip::stop_train();
-    }
-}
-
-/// Where a fault ends: all off, for ever.
-pub(crate) fn safe() -> ! {
-    cortex_m::interrupt::disable();
-    chip::stop_train();
-    // SAFETY: interrupts are off and nothing runs any more but this; the writes only switch outputs off.
-    #[allow(unsafe_code, reason = "the owner of the pins may be damaged")]
-    unsafe {
-        (*pac::GPIOA::ptr()).bsrr().write(|w| w.br9().set_bit());
-        (*pac::GPIOA::ptr()).bsrr().write(|w| w.br6().set_bit());
-    }
-    loop {
-        cortex_m::asm::wfi();
-    }
+    chip::board(devices, steps, drives, contact, restarted, &mut rcc)
 }

@@ -28,7 +28,7 @@ where
     let serial = match Serial::new(usart, pins, config, rcc) {
         Ok(serial) => serial,
         // the rate is fixed and every board's clock can make it: only init gets here, and never
-        Err(_) => super::this::safe(),
+        Err(_) => super::safe(),
     };
     let (sender, mut receiver) = serial.split();
     receiver.listen();

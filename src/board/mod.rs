@@ -1,8 +1,8 @@
 //! Boards: the only code that knows a register.
 //!
-//! Each board is a module with the same `setup() -> Board`, the pins in its own documentation and a function `safe`
-//! that the fault handlers call. What boards share stands beside them: the step timer and the step port of real
-//! chips, the serial port of the link, the emergency input, the faults. All boards use the same interrupts
+//! Each board is a module with the same `setup() -> Board` and the pins in its own documentation. What boards share
+//! stands beside them: `chip` and `pins` have what all real ones do alike, `link_port` the serial port, `fault` the
+//! handlers of faults. All boards use the same interrupts
 //! (a task of the app names one): TIM5 for steps, USART2 for the link, EXTI15_10 for the emergency stop, I2C3_ER for
 //! the interpolator and I2C3_EV for the background (the last two stand for no device).
 //!
@@ -20,6 +20,8 @@ mod f407;
 mod f411;
 #[cfg(feature = "board-f446")]
 mod f446;
+#[cfg(not(feature = "board-qemu"))]
+mod pins;
 #[cfg(feature = "board-qemu")]
 mod qemu;
 
@@ -43,8 +45,14 @@ compile_error!("name one board only");
 
 use handcnc::background::parameters::Parameters;
 
+#[cfg(not(feature = "board-qemu"))]
+pub(crate) use chip::{Bench, StepTimer, Watchdog, safe, sleep};
 pub(crate) use link_port::{Receiver, Sender};
-pub(crate) use this::{Bench, Drives, EmergencyInput, StepPort, StepTimer, safe, setup, sleep};
+#[cfg(not(feature = "board-qemu"))]
+pub(crate) use pins::{Contact, Drives, EmergencyInput, StepPort};
+pub(crate) use this::setup;
+#[cfg(feature = "board-qemu")]
+pub(crate) use this::{Bench, Contact, Drives, EmergencyInput, StepPort, StepTimer, Watchdog, safe, sleep};
 
 /// A panic that the compiler can't see coming.
 #[cfg(feature = "planted-panic")]
@@ -62,12 +70,18 @@ pub(crate) struct Board {
     pub(crate) port: StepPort,
     /// Enable pins of motor drivers and spindle.
     pub(crate) drives: Drives,
-    /// Emergency stop.
+    /// Interrupt of the emergency stop.
     pub(crate) emergency: EmergencyInput,
+    /// Level of the emergency stop.
+    pub(crate) contact: Contact,
     /// The link's bytes in.
     pub(crate) receiver: Receiver,
     /// The link's bytes out.
     pub(crate) sender: Sender,
+    /// Restarts the chip unless it is fed.
+    pub(crate) watchdog: Watchdog,
+    /// The watchdog has restarted the chip.
+    pub(crate) restarted: bool,
     /// What a test bench asks for.
     pub(crate) bench: Bench,
     /// The machine's parameters.

@@ -13,8 +13,9 @@
 //! `TICK:hold`, `TICK:start`, `TICK:reset`, `TICK:override=PERCENT` for a command at a tick of the cycle.
 
 use handcnc::background::parameters::Parameters;
-use handcnc::background::status::Faults;
 use handcnc::foreground::Command;
+use handcnc::foreground::alarm::Faults;
+use handcnc::foreground::outputs::Outputs;
 use handcnc::foreground::rehearsal::Rehearsal;
 use interp_core::channel::{Report, State};
 use interp_core::config::TICK_CLOCKS;
@@ -43,8 +44,11 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
         port: StepPort::new(dp.GPIOE, dp.GPIOF),
         drives: Drives,
         emergency: EmergencyInput,
+        contact: Contact,
         receiver,
         sender,
+        watchdog: Watchdog,
+        restarted: false,
         bench: Bench { rehearsal, state: State::Idle, mark: Mark },
         parameters,
     }
@@ -116,17 +120,32 @@ impl StepPort {
 }
 
 /// No drives.
+#[derive(Copy, Clone)]
 pub(crate) struct Drives;
 
 impl Drives {
-    /// Nothing to switch on.
-    pub(crate) fn enable(&mut self) {}
+    /// Nothing to switch.
+    pub(crate) fn follow(&mut self, _: Outputs) {}
 
-    /// Nothing to switch off but the train.
-    pub(crate) fn off(&mut self) {
-        // SAFETY: one write that stops the counter; whatever the owner of the timer does next starts nothing.
-        #[allow(unsafe_code, reason = "an emergency stops a timer that another task owns")]
-        unsafe { &*TIM5::ptr() }.cr1().write(|w| w.cen().clear_bit());
+    /// Nothing to switch off.
+    pub(crate) fn off(&mut self) {}
+}
+
+/// No watchdog.
+pub(crate) struct Watchdog;
+
+impl Watchdog {
+    /// Nothing to feed.
+    pub(crate) fn feed(&mut self) {}
+}
+
+/// No emergency input.
+pub(crate) struct Contact;
+
+impl Contact {
+    /// Never open.
+    pub(crate) const fn is_open(&self) -> bool {
+        false
     }
 }
 

@@ -13,7 +13,9 @@ mod image {
     use handcnc::background::inbox::Inbox;
     use handcnc::background::link::{Link, Realtime};
     use handcnc::background::parameters::Parameters;
-    use handcnc::background::status::{Faults, Status};
+    use handcnc::background::status::Status;
+    use handcnc::foreground::alarm::{Alarm, Faults};
+    use handcnc::foreground::heartbeat::Heartbeat;
     use handcnc::foreground::rehearsal::Rehearsal;
     use handcnc::foreground::train_queue::TrainQueue;
     use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
@@ -66,6 +68,8 @@ mod image {
         black_box(rehearsal.set(black_box(7), black_box(Command::Hold)));
         let mut queue = TrainQueue::new();
         let (mut train, mut player) = queue.split();
+        foreground.raise(black_box(Alarm::Watchdog));
+        let mut heartbeat = Heartbeat::new();
         let mut inbox = Inbox::new(bytes_in, realtime_in);
         loop {
             inbox.take(black_box(0));
@@ -76,10 +80,12 @@ mod image {
                 link.realtime(what, &mut commands_in, &status.snapshot(), &mut Out);
             }
             black_box(link.work(&mut blocks_in, &mut commands_in, &status.snapshot(), &mut Out));
+            let faults = Faults { underruns: player.underruns(), overruns: train.overruns(), late: black_box(0) };
+            foreground.watch(faults, black_box(false));
             rehearsal.due(foreground.state(), &mut |command| foreground.obey(command));
             let report = foreground.tick(&mut |event| train.put(event));
             train.publish();
-            let faults = Faults { underruns: player.underruns(), overruns: train.overruns(), late: 0 };
+            black_box((foreground.outputs(), heartbeat.beat(black_box(true), report.speed)));
             status.publish(&report, &foreground, faults);
             black_box(player.next_or_idle());
             if cfg!(feature = "planted") {
