@@ -1,6 +1,7 @@
 //! Whatever comes down the wire.
 
 use super::*;
+use crate::background::inbox::{Inbox, LOST};
 use proptest::prelude::*;
 
 /// A line of a program, good or hopeless, without its terminator.
@@ -44,6 +45,39 @@ fn line() -> impl Strategy<Value = Vec<u8>> {
         2 => other.prop_map(|text| text.as_bytes().to_vec()),
         1 => garbage.prop_map(|bytes| bytes.into_iter().filter(|byte| is_text(*byte)).collect()),
     ]
+}
+
+/// A line that moves nothing, with its terminator: refused, a query, overlong, garbage, or cut by a break.
+fn idle_line() -> impl Strategy<Value = Vec<u8>> {
+    let known = proptest::sample::select(std::vec![
+        "",
+        "$$",
+        "$G",
+        "$I",
+        "$X",
+        "$",
+        "$x.max_feed=900",
+        "$100=400",
+        "$format=nc1973",
+        "$H",
+        "Q9",
+        "X1 X2",
+        "G2",
+        "G0 X",
+        "(c)",
+        "12",
+    ]);
+    let garbage = proptest::collection::vec(0..=0xFF_u8, 0..60);
+    let text = |bytes: Vec<u8>| -> Vec<u8> { bytes.into_iter().filter(|byte| is_text(*byte)).collect() };
+    prop_oneof![
+        4 => known.prop_map(|text| text.as_bytes().to_vec()),
+        // no line begins with =
+        2 => garbage.prop_map(move |bytes| [b"=".to_vec(), text(bytes)].concat()),
+        1 => (MAX_LINE + 1..3 * MAX_LINE).prop_map(|bytes| std::vec![b'x'; bytes]),
+        1 => Just([b"G0 X".as_slice(), &[LOST], b"99"].concat()),
+        1 => Just(b"?G0 ?X???".to_vec()),
+    ]
+    .prop_map(|line| [line, b"\n".to_vec()].concat())
 }
 
 /// Neither a terminator nor a real-time byte.
@@ -98,6 +132,38 @@ proptest! {
         }
         prop_assert_eq!(bench.answers().len(), due);
         prop_assert_eq!(bench.counted, bench.snapshot.position);
+    }
+
+    #[test]
+    fn what_is_sent_in_motion_is_answered_and_changes_no_pulse(
+        lines in proptest::collection::vec(idle_line(), 1..80),
+        pace in 1..600_usize,
+    ) {
+        let program = "G91 G1 X2 Z-3 F1000\nG3 X0.5 Z-1 R2\nG1 X-2 F400\nM30\n";
+        let mut bench = Bench::new();
+        bench.ask(program);
+        bench.ticks(20);
+        // as the receiving interrupt and the background task hand it on
+        let (mut bytes, mut requests) = (crate::queue::Queue::<u8, 256>::new(), crate::queue::Queue::<Realtime, 32>::new());
+        let ((bytes_in, mut bytes_out), (requests_in, mut requests_out)) = (bytes.split(), requests.split());
+        let mut inbox = Inbox::new(bytes_in, requests_in);
+        for part in lines.concat().chunks(pace) {
+            part.iter().for_each(|byte| inbox.take(*byte));
+            while let Some(byte) = bytes_out.dequeue() {
+                if byte == LOST { bench.link.damaged() } else { bench.link.receive(byte) }
+            }
+            while let Some(what) = requests_out.dequeue() {
+                bench.link.realtime(what, &mut bench.commands, &bench.snapshot, &mut bench.out);
+            }
+            bench.tick();
+        }
+        bench.until_idle();
+        prop_assert_eq!(bench.train, without_link(program));
+        let lost = usize::try_from(inbox.lost()).unwrap();
+        let messages = bench.out.matches("[MSG:").count();
+        prop_assert_eq!(messages, bench.out.matches("error:").count(), "each refusal has its number and its name");
+        let answers = bench.answers().len();
+        prop_assert!(answers <= lines.len() && answers + lost >= lines.len(), "{answers} answers to {} lines", lines.len());
     }
 
     #[test]

@@ -79,13 +79,62 @@ fn a_hold_while_the_look_ahead_fills_is_kept() {
 
 #[test]
 fn a_programmed_stop_waits_for_start() {
+    for (stop, set) in [("M0", "false"), ("M1", "true")] {
+        let mut bench = Bench::with(&[("optional_stop", set)]);
+        bench.ask(&std::format!("G0 X1\n{stop}\nG0 X2\nM30\n"));
+        bench.ticks(2_000);
+        assert_eq!(bench.status(), "Hold:0|MPos:1.000,0.000,0.000");
+        bench.send("~");
+        bench.until_idle();
+        assert_eq!(bench.status(), "Idle|MPos:2.000,0.000,0.000");
+    }
+}
+
+#[test]
+fn an_optional_stop_is_passed_by_until_it_is_switched_on() {
     let mut bench = Bench::new();
-    bench.ask("G0 X1\nM0\nG0 X2\nM30\n");
-    bench.ticks(2_000);
-    assert_eq!(bench.status(), "Hold:0|MPos:1.000,0.000,0.000");
-    bench.send("~");
+    bench.ask("G0 X1\nM1\nG0 X2\nM30\n");
     bench.until_idle();
     assert_eq!(bench.status(), "Idle|MPos:2.000,0.000,0.000");
+    assert_eq!(bench.ask("$optional_stop=true\n"), "ok\r\n");
+    bench.ask("G0 X1\nM1\nG0 X0\nM30\n");
+    bench.ticks(2_000);
+    assert_eq!(bench.status(), "Hold:0|MPos:1.000,0.000,0.000");
+}
+
+#[test]
+fn the_spindle_follows_the_program_and_stops_at_its_end_and_at_a_reset() {
+    let mut bench = Bench::new();
+    bench.ask("M3 S100\nG1 X1 F600\nM4\nG4 P0.2\nM3\nX0\nM30\n");
+    let spindle = |bench: &Bench| bench.foreground.outputs().spindle;
+    assert!(!spindle(&bench));
+    bench.ticks(100);
+    assert!(spindle(&bench));
+    // no board has a pin for the sense: a reverse is not a forward
+    bench.ticks(150);
+    assert!(!spindle(&bench));
+    bench.until_idle();
+    assert!(!spindle(&bench) && bench.foreground.outputs().motors);
+    bench.ask("M3\nG1 X5 F600\n");
+    bench.ticks(200);
+    assert!(spindle(&bench));
+    bench.send("\x18");
+    bench.tick();
+    assert!(!spindle(&bench));
+}
+
+#[test]
+fn an_override_of_nothing_stands_still_and_goes_on() {
+    let mut bench = Bench::new();
+    bench.ticks(3);
+    assert_eq!(bench.ask("$feed_override=0\n"), "ok\r\n");
+    bench.ticks(3);
+    bench.ask("G1 X1 F600\nM30\n");
+    bench.ticks(500);
+    assert_eq!((bench.pulses, bench.snapshot.feed_override), (0, 0));
+    bench.send(b"\x90");
+    bench.until_idle();
+    assert_eq!(bench.status(), "Idle|MPos:1.000,0.000,0.000");
 }
 
 #[test]
