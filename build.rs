@@ -6,5 +6,6 @@ fn main() {
     if on_chip && let Ok(root) = std::env::var("CARGO_MANIFEST_DIR") {
         println!("cargo:rustc-link-search={root}");
         println!("cargo:rustc-link-arg-bins=-Tlink.x");
+        println!("cargo:rustc-link-arg-bins=-Tdefmt.x");
     }
 }

@@ -110,6 +110,7 @@ mod app {
         let position = Lattice { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) };
         let mut foreground = Foreground::new(&machine, position, blocks_out, commands_out);
         foreground.obey(Command::FeedOverride(parameters.feed_override()));
+        defmt::println!("{=str}, restarted by the watchdog: {=bool}", env!("CARGO_PKG_VERSION"), have.restarted);
         if have.restarted {
             foreground.raise(Alarm::Watchdog);
         }
@@ -195,13 +196,13 @@ mod app {
     }
 
     /// Talks with the sender and compiles what it sends.
-    #[task(binds = I2C3_EV, priority = 1, local = [link, sender, bytes, realtime, blocks, commands])]
+    #[task(binds = I2C3_EV, priority = 1, local = [link, sender, bytes, realtime, blocks, commands, told: Option<Alarm> = None])]
     fn edit(cx: edit::Context) {
-        let edit::LocalResources { link, sender, bytes, realtime, blocks, commands, .. } = cx.local;
-        ALIVE.store(true, Relaxed);
+        let edit::LocalResources { link, sender, bytes, realtime, blocks, commands, told, .. } = cx.local;
         #[cfg(feature = "planted-panic")]
         board::plant();
         loop {
+            ALIVE.store(true, Relaxed);
             while let Some(byte) = bytes.dequeue() {
                 if byte == LOST { link.damaged() } else { link.receive(byte) }
             }
@@ -211,6 +212,10 @@ mod app {
             if !link.work(blocks, commands, &STATUS.snapshot(), sender) {
                 break;
             }
+        }
+        let alarm = STATUS.snapshot().alarm;
+        if core::mem::replace(told, alarm) != alarm {
+            defmt::error!("alarm {=u8}", alarm.map_or(0, Alarm::number));
         }
     }
 

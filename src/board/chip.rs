@@ -152,8 +152,7 @@ pub(crate) const fn set_and_clear(levels: Levels, first: u32) -> u32 {
 
 /// Where a fault ends: all off, until the watchdog restarts the chip.
 pub(crate) fn safe() -> ! {
-    cortex_m::interrupt::disable();
-    Drives.off();
+    super::off();
     loop {
         cortex_m::asm::nop();
     }

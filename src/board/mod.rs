@@ -2,15 +2,17 @@
 //!
 //! Each board is a module with the same `setup() -> Board` and the pins in its own documentation. What boards share
 //! stands beside them: `chip` and `pins` have what all real ones do alike, `link_port` the serial port, `fault` the
-//! handlers of faults. All boards use the same interrupts
+//! handlers of faults, `log` the log, which leaves by `rtt` or `host_log`. All boards use the same interrupts
 //! (a task of the app names one): TIM5 for steps, USART2 for the link, EXTI15_10 for the emergency stop, I2C3_ER for
 //! the interpolator and I2C3_EV for the background (the last two stand for no device).
 //!
 //! The only `unsafe` of the firmware is here.
 
 mod fault;
+#[cfg(feature = "board-qemu")]
+mod host_log;
 mod link_port;
-mod registers;
+mod log;
 
 #[cfg(not(feature = "board-qemu"))]
 mod chip;
@@ -24,6 +26,10 @@ mod f446;
 mod pins;
 #[cfg(feature = "board-qemu")]
 mod qemu;
+#[cfg(feature = "board-qemu")]
+mod registers;
+#[cfg(not(feature = "board-qemu"))]
+mod rtt;
 
 #[cfg(feature = "board-f407")]
 use f407 as this;
@@ -33,6 +39,11 @@ use f411 as this;
 use f446 as this;
 #[cfg(feature = "board-qemu")]
 use qemu as this;
+
+#[cfg(feature = "board-qemu")]
+use host_log as this_log;
+#[cfg(not(feature = "board-qemu"))]
+use rtt as this_log;
 
 #[cfg(not(any(feature = "board-f407", feature = "board-f411", feature = "board-f446", feature = "board-qemu")))]
 compile_error!("name a board: --features board-f407, board-f411, board-f446 or board-qemu (cargo xtask firmware does)");
@@ -53,6 +64,12 @@ pub(crate) use pins::{Contact, Drives, EmergencyInput, StepPort};
 pub(crate) use this::setup;
 #[cfg(feature = "board-qemu")]
 pub(crate) use this::{Bench, Contact, Drives, EmergencyInput, StepPort, StepTimer, Watchdog, safe, sleep};
+
+/// Masks interrupts and switches all off: a fault's first step.
+fn off() {
+    cortex_m::interrupt::disable();
+    Drives.off();
+}
 
 /// A panic that the compiler can't see coming.
 #[cfg(feature = "planted-panic")]

@@ -10,6 +10,7 @@
 //! EGR leaves behind to every later alarm, so those are never written; writing ARR restarts the wait.
 //!
 //! The words of semihosting's command line (`-semihosting-config arg=..`) are `name=value` for a parameter and
+//! `log=FILE` for a log,
 //! `TICK:hold`, `TICK:start`, `TICK:reset`, `TICK:override=PERCENT` for a command at a tick of the cycle.
 
 use handcnc::background::parameters::Parameters;
@@ -25,7 +26,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Config;
 
 use super::registers::Registers;
-use super::{Board, link_port};
+use super::{Board, host_log, link_port};
 
 /// Sets the board up.
 pub(crate) fn setup(dp: Peripherals) -> Board {
@@ -220,6 +221,9 @@ fn each_word(give: &mut impl FnMut(&str)) {
 
 /// Obeys one word. False where it is none.
 fn set(word: &str, parameters: &mut Parameters, rehearsal: &mut Rehearsal) -> bool {
+    if let Some(path) = word.strip_prefix("log=") {
+        return host_log::open(path);
+    }
     if let Some((tick, what)) = word.split_once(':') {
         let command = match what.split_once('=') {
             None if what == "hold" => Command::Hold,
