@@ -10,7 +10,7 @@ use crate::curve::arc::Arc;
 use crate::curve::line::Line;
 use crate::curve::prepare_arc::{Metric, Prepared, Reach};
 use crate::curve::proportion::Proportion;
-use crate::math::{RADIAN_Q30, root_wide, scale, to_i64, to_u32};
+use crate::math::{RADIAN_Q30, Wide, root_wide, scale, to_i64, to_u32};
 use crate::units::{Axis, Feedrate, Lattice, Length, Point, Sense};
 use heapless::Vec;
 
@@ -244,7 +244,7 @@ impl Builder {
         let Some(line) = Line::new(x, z) else { return };
         self.lattice = to;
         let (dx, dz) = self.span(x, z);
-        let square = dx.saturating_mul(dx).saturating_add(dz.saturating_mul(dz));
+        let square = dx.squared().saturating_add(dz.squared());
         let length = root_wide(square.unsigned_abs()).max(1);
         let part = |d: i128| to_i64(scale(d, i128::from(RADIAN_Q30), i128::from(length)));
         let heading = (part(dx), part(dz));
@@ -385,16 +385,16 @@ pub fn split(start: Point, end: Point, centre: (i64, i64), sense: Sense) -> Spli
         Sense::Clockwise => cross.wrapping_neg(),
     };
     // positive for less than half a turn, zero for half a turn or none
-    let cross = turn(sz.wrapping_mul(ex).wrapping_sub(sx.wrapping_mul(ez)));
-    let along = sx.wrapping_mul(ex).wrapping_add(sz.wrapping_mul(ez));
+    let cross = turn(sz.times(ex).wrapping_sub(sx.times(ez)));
+    let along = sx.times(ex).wrapping_add(sz.times(ez));
     if cross > 0 || (cross == 0 && along < 0) {
         return Split::Whole(Reach::Short);
     }
     // radii with 16 fraction bits, and both vectors brought to one length, so that the bisector halves the angle
     let (radius_s, radius_e) = (length(sx << 16, sz << 16), length(ex << 16, ez << 16));
     let mean = radius_s.wrapping_add(radius_e) >> 1;
-    let (sx, sz) = (sx.wrapping_mul(radius_e), sz.wrapping_mul(radius_e));
-    let (ex, ez) = (ex.wrapping_mul(radius_s), ez.wrapping_mul(radius_s));
+    let (sx, sz) = (sx.times(radius_e), sz.times(radius_e));
+    let (ex, ez) = (ex.times(radius_s), ez.times(radius_s));
     // the better conditioned of two ways: against the sum of both, or square to their difference
     let opposite = (sx.wrapping_add(ex).wrapping_neg(), sz.wrapping_add(ez).wrapping_neg());
     let (cx, cz) = (ex.wrapping_sub(sx), ez.wrapping_sub(sz));
@@ -420,6 +420,6 @@ fn length(x: i128, z: i128) -> i128 {
     let bits = 128_u32.wrapping_sub(x.unsigned_abs().max(z.unsigned_abs()).leading_zeros());
     let cut = bits.saturating_sub(62);
     let (x, z) = (x.wrapping_shr(cut), z.wrapping_shr(cut));
-    let square = x.wrapping_mul(x).wrapping_add(z.wrapping_mul(z));
+    let square = x.times(x).wrapping_add(z.times(z));
     i128::from(root_wide(square.unsigned_abs())).wrapping_shl(cut)
 }

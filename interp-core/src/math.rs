@@ -55,6 +55,47 @@ pub const fn root_wide(value: u128) -> u64 {
     root
 }
 
+/// Arithmetic of 128 bits as calls: in the code each such product takes a hundred instructions and more, and where
+/// blocks are prepared space matters, not time.
+pub trait Wide {
+    /// The product modulo 2^128.
+    #[must_use]
+    fn times(self, other: Self) -> Self;
+    /// The square, saturating.
+    #[must_use]
+    fn squared(self) -> Self;
+    /// The quotient rounded down, for a positive divisor; `None` for 0.
+    fn quotient(self, divisor: Self) -> Option<Self>
+    where
+        Self: Sized;
+    /// What is left then.
+    fn rest(self, divisor: Self) -> Option<Self>
+    where
+        Self: Sized;
+}
+
+impl Wide for i128 {
+    #[inline(never)]
+    fn times(self, other: Self) -> Self {
+        self.wrapping_mul(other)
+    }
+
+    #[inline(never)]
+    fn squared(self) -> Self {
+        self.saturating_mul(self)
+    }
+
+    #[inline(never)]
+    fn quotient(self, divisor: Self) -> Option<Self> {
+        self.checked_div_euclid(divisor)
+    }
+
+    #[inline(never)]
+    fn rest(self, divisor: Self) -> Option<Self> {
+        self.checked_rem_euclid(divisor)
+    }
+}
+
 /// `value * numerator / denominator` rounded to nearest, half toward plus infinity; saturates, and 0 where the
 /// denominator is not positive.
 pub const fn scale(value: i128, numerator: i128, denominator: i128) -> i128 {

@@ -8,7 +8,7 @@
 use super::arc::{Arc, MAX_PIECES, Timeline};
 use super::proportion::Proportion;
 use crate::math::{
-    HALF_TURN_Q60, RADIAN_Q30, angle_of, cosine_from_sine, root_wide, scale, sine, to_i32, to_i64, to_u64,
+    HALF_TURN_Q60, RADIAN_Q30, Wide, angle_of, cosine_from_sine, root_wide, scale, sine, to_i32, to_i64, to_u64,
 };
 use crate::units::{Axis, Lattice, PulseSize, Sense};
 
@@ -67,7 +67,7 @@ impl Turn {
     pub fn heading(&self, swept: i64) -> (i64, i64) {
         let whole = i128::from(HALF_TURN_Q60).wrapping_mul(2);
         let angle = i128::from(self.start).wrapping_add(i128::from(self.along(swept)));
-        let (sine, cosine) = unit(to_i64(angle.checked_rem_euclid(whole).unwrap_or(0)));
+        let (sine, cosine) = unit(to_i64(angle.rest(whole).unwrap_or(0)));
         (self.along(cosine), self.along(sine.wrapping_neg()))
     }
 
@@ -77,7 +77,7 @@ impl Turn {
         let mut x = first.0.wrapping_abs().max(last.0.wrapping_abs());
         let mut z = first.1.wrapping_abs().max(last.1.wrapping_abs());
         for quarter in -6..=6_i128 {
-            let off = quarter.wrapping_mul(i128::from(HALF_TURN_Q60 >> 1)).wrapping_sub(i128::from(self.start));
+            let off = quarter.times(i128::from(HALF_TURN_Q60 >> 1)).wrapping_sub(i128::from(self.start));
             let swept = if self.sense == Sense::CounterClockwise { off } else { off.wrapping_neg() };
             if (0..=i128::from(self.sweep)).contains(&swept) {
                 if quarter & 1 == 0 { x = RADIAN_Q30 } else { z = RADIAN_Q30 }
@@ -123,14 +123,14 @@ impl Metric {
 
     /// Weights of X and Z for arcs of `radius` (nm, 12 fraction bits): as large as 64 bits bear.
     fn weights(&self, radius: i128) -> (i128, i128) {
-        let (x2, z2) = (self.across.wrapping_mul(self.across), self.along.wrapping_mul(self.along));
+        let (x2, z2) = (self.across.times(self.across), self.along.times(self.along));
         let largest = x2.max(z2);
         let coarser = if self.across > self.along { self.x } else { self.z };
         let size = i128::from(coarser.numerator()) << 12;
         let pulses = scale(radius, i128::from(coarser.denominator()), size).saturating_add(2);
         let most = (1_i128 << 56).checked_div(pulses).unwrap_or(1).min(1 << 44);
         match most.checked_div(largest) {
-            Some(times) if times >= 4096 => (x2.wrapping_mul(times), z2.wrapping_mul(times)),
+            Some(times) if times >= 4096 => (x2.times(times), z2.times(times)),
             _ => (scale(x2, most, largest).max(1), scale(z2, most, largest).max(1)),
         }
     }
@@ -144,7 +144,7 @@ impl Metric {
         }
         let off_x = Self::place(self.x, start.x).wrapping_sub(i128::from(centre.0) << 12);
         let off_z = Self::place(self.z, start.z).wrapping_sub(i128::from(centre.1) << 12);
-        let square = off_x.saturating_mul(off_x).saturating_add(off_z.saturating_mul(off_z));
+        let square = off_x.squared().saturating_add(off_z.squared());
         let radius = i128::from(root_wide(square.unsigned_abs()));
         let coarser = if self.across > self.along { self.x } else { self.z };
         // a whole turn about less than a pulse stays where it is
@@ -201,16 +201,16 @@ impl<'m> Preparation<'m> {
         // 2 a (centre / pulse - start)
         let about = |pulse: PulseSize, weight: i128, centre: i64, start: i32| {
             let (num, den) = (i128::from(pulse.numerator()), i128::from(pulse.denominator()));
-            let off = i128::from(centre).wrapping_mul(den).wrapping_sub(i128::from(start).wrapping_mul(num));
+            let off = i128::from(centre).times(den).wrapping_sub(i128::from(start).times(num));
             scale(weight.wrapping_mul(2), off, num)
         };
         let mut c = about(metric.x, a, centre.0, start.x);
         let mut d = about(metric.z, b, centre.1, start.z);
         // move the centre along the chord until F is zero at the end
         let (dx, dz) = (i128::from(end.0), i128::from(end.1));
-        let (reach_x, reach_z) = (a.wrapping_mul(dx), b.wrapping_mul(dz));
-        let chord = reach_x.wrapping_mul(dx).wrapping_add(reach_z.wrapping_mul(dz));
-        let miss = chord.wrapping_sub(c.wrapping_mul(dx)).wrapping_sub(d.wrapping_mul(dz));
+        let (reach_x, reach_z) = (a.times(dx), b.times(dz));
+        let chord = reach_x.times(dx).wrapping_add(reach_z.times(dz));
+        let miss = chord.wrapping_sub(c.times(dx)).wrapping_sub(d.times(dz));
         let bits = 128_u32.wrapping_sub(miss.unsigned_abs().leading_zeros());
         let shift = bits.saturating_sub(60);
         c = c.wrapping_add(scale(reach_x, miss.wrapping_shr(shift), chord.wrapping_shr(shift).max(1)));
@@ -219,7 +219,7 @@ impl<'m> Preparation<'m> {
         let longest = c.unsigned_abs().max(d.unsigned_abs());
         let spare = 128_u32.wrapping_sub(longest.leading_zeros()).saturating_sub(40);
         let (cs, ds) = (c.wrapping_shr(spare), d.wrapping_shr(spare));
-        let sum = b.saturating_mul(cs.wrapping_mul(cs)).saturating_add(a.saturating_mul(ds.wrapping_mul(ds)));
+        let sum = b.saturating_mul(cs.times(cs)).saturating_add(a.saturating_mul(ds.times(ds)));
         let square = sum.checked_div(a.wrapping_add(b))?;
         let tangent = i128::from(root_wide(square.unsigned_abs())).wrapping_shl(spare);
         (tangent > 0).then_some(Self { metric, sense, reach, end, a, b, c, d, tangent })
@@ -227,8 +227,8 @@ impl<'m> Preparation<'m> {
 
     /// Gradient of `F` at a lattice point: X, Z.
     fn gradient(&self, x: i32, z: i32) -> (i128, i128) {
-        let along_x = self.a.wrapping_mul(2).wrapping_mul(i128::from(x)).wrapping_sub(self.c);
-        let along_z = self.b.wrapping_mul(2).wrapping_mul(i128::from(z)).wrapping_sub(self.d);
+        let along_x = self.a.wrapping_mul(2).times(i128::from(x)).wrapping_sub(self.c);
+        let along_z = self.b.wrapping_mul(2).times(i128::from(z)).wrapping_sub(self.d);
         (along_x, along_z)
     }
 
@@ -274,8 +274,8 @@ impl<'m> Preparation<'m> {
             Axis::Z => (self.b, self.d, self.a, self.c, octant < 4),
         };
         // an n^2 - cn n + (am m^2 - cm m) = 0, so 2 an n - cn = +- root(cn^2 - 4 an (am m^2 - cm m))
-        let rest = am.wrapping_mul(m).wrapping_sub(cm).wrapping_mul(m);
-        let square = cn.wrapping_mul(cn).wrapping_sub(an.wrapping_mul(4).wrapping_mul(rest)).max(0).unsigned_abs();
+        let rest = am.times(m).wrapping_sub(cm).times(m);
+        let square = cn.times(cn).wrapping_sub(an.wrapping_mul(4).times(rest)).max(0).unsigned_abs();
         let floor = root_wide(square);
         let exact = u128::from(floor).wrapping_mul(u128::from(floor)) == square;
         let gradient = i128::from(floor);
@@ -283,7 +283,7 @@ impl<'m> Preparation<'m> {
         let top =
             if above { cn.wrapping_add(gradient) } else { cn.wrapping_sub(gradient).wrapping_sub(i128::from(!exact)) };
         let doubled = an.wrapping_mul(2);
-        to_i32(to_i64(top.wrapping_add(an).checked_div_euclid(doubled).unwrap_or(0)))
+        to_i32(to_i64(top.wrapping_add(an).quotient(doubled).unwrap_or(0)))
     }
 
     fn arc(&self) -> Option<(Arc, Turn)> {
@@ -349,7 +349,7 @@ impl<'m> Preparation<'m> {
                 let (num, den) = self.border(earlier, axis, tangent);
                 let reached = Self::before(num, den, sign.wrapping_neg());
                 // a point on an extreme belongs to the octant before it
-                let on_border = i128::from(reached).wrapping_mul(den) == num;
+                let on_border = i128::from(reached).times(den) == num;
                 let skip = if !tangent && on_border { i32::from(sign) } else { 0 };
                 (reached.wrapping_add(skip), true)
             };
@@ -386,15 +386,15 @@ impl<'m> Preparation<'m> {
 
     /// The last lattice line before `num / den` when travelling with `sign`, or on it.
     fn before(num: i128, den: i128, sign: i8) -> i32 {
-        let floor = num.checked_div_euclid(den).unwrap_or(0);
-        let line = if sign > 0 || floor.wrapping_mul(den) == num { floor } else { floor.wrapping_add(1) };
+        let floor = num.quotient(den).unwrap_or(0);
+        let line = if sign > 0 || floor.times(den) == num { floor } else { floor.wrapping_add(1) };
         to_i32(to_i64(line))
     }
 
     fn timeline(&self, octant: u8) -> Option<(Timeline, Turn)> {
         let metric = self.metric;
         // X : Z of the radius vector in mm is (gradient x / pulse x) : (gradient z / pulse z)
-        let angle = |(x, z): (i128, i128)| angle_of(z.wrapping_mul(metric.across), x.wrapping_mul(metric.along));
+        let angle = |(x, z): (i128, i128)| angle_of(z.times(metric.across), x.times(metric.along));
         let start = angle(self.gradient(0, 0));
         let stop = angle(self.gradient(self.end.0, self.end.1));
         let whole = i128::from(HALF_TURN_Q60).wrapping_mul(2);
@@ -402,24 +402,24 @@ impl<'m> Preparation<'m> {
             Sense::CounterClockwise => 1,
             Sense::Clockwise => -1,
         };
-        let swept = i128::from(stop).wrapping_sub(i128::from(start)).wrapping_mul(travel);
-        let swept = swept.checked_rem_euclid(whole)?;
+        let swept = i128::from(stop).wrapping_sub(i128::from(start)).times(travel);
+        let swept = swept.rest(whole)?;
         // a whole turn and a little less or more: the angles alone can't tell
         let lacks = matches!(self.reach, Reach::Long) && swept < whole >> 2;
         let sweep = if lacks { swept.wrapping_add(whole) } else { swept };
         let span = |pulse: PulseSize, centre: i128, weight: i128| {
-            let den = weight.wrapping_mul(2).wrapping_mul(i128::from(pulse.denominator()));
+            let den = weight.wrapping_mul(2).times(i128::from(pulse.denominator()));
             scale(centre, i128::from(pulse.numerator()) << 12, den)
         };
         let (x, z) = (span(metric.x, self.c, self.a), span(metric.z, self.d, self.b));
-        let square = x.saturating_mul(x).saturating_add(z.saturating_mul(z));
+        let square = x.squared().saturating_add(z.squared());
         let radius = root_wide(square.unsigned_abs());
         if radius == 0 {
             return None;
         }
-        let length = to_u64(i128::from(radius).wrapping_mul(sweep) >> 60);
-        let middle = i128::from(octant.wrapping_add(1) >> 1 & 3).wrapping_mul(i128::from(HALF_TURN_Q60) >> 1);
-        let mut off = i128::from(start).wrapping_sub(middle).checked_rem_euclid(whole)?;
+        let length = to_u64(i128::from(radius).times(sweep) >> 60);
+        let middle = i128::from(octant.wrapping_add(1) >> 1 & 3).times(i128::from(HALF_TURN_Q60) >> 1);
+        let mut off = i128::from(start).wrapping_sub(middle).rest(whole)?;
         if off > i128::from(HALF_TURN_Q60) {
             off = off.wrapping_sub(whole);
         }
@@ -435,7 +435,7 @@ impl<'m> Preparation<'m> {
                 to_i64(scale(self.c, 1 << 16, self.a.wrapping_mul(2))),
                 to_i64(scale(self.d, 1 << 16, self.b.wrapping_mul(2))),
             ],
-            start_angle: to_i32(to_i64(off.wrapping_mul(travel) >> 30)),
+            start_angle: to_i32(to_i64(off.times(travel) >> 30)),
             half_width: [to_i32(metric.half_width_x >> 30), to_i32(quarter.wrapping_sub(metric.half_width_x) >> 30)],
             length,
         };
