@@ -6,12 +6,13 @@ use interp_core::channel::{Report, State};
 use interp_core::train::Levels;
 use stm32f4xx_hal::gpio::alt::SerialAsync as CommonPins;
 use stm32f4xx_hal::gpio::{ExtiPin, PushPull};
-use stm32f4xx_hal::pac::{EXTI, IWDG, RCC, SYSCFG, TIM5, USART2};
+use stm32f4xx_hal::pac::{EXTI, IWDG, RCC, SYSCFG, TIM5, USART2, tim5};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 use super::pins::{Contact, Drives, EmergencyInput, StepPort};
+use super::registers::Registers;
 use super::this::TIMER_DIVIDER;
 use super::{Board, link_port};
 
@@ -98,7 +99,7 @@ impl Watchdog {
 /// is not buffered: should the handler come so late that the counter has passed the new value, it is moved on at once
 /// and the late event counted.
 pub(crate) struct StepTimer {
-    timer: TIM5,
+    timer: Registers<tim5::RegisterBlock>,
 }
 
 impl StepTimer {
@@ -114,7 +115,9 @@ impl StepTimer {
         timer.sr().write(|w| w.uif().clear_bit());
         timer.dier().write(|w| w.uie().set_bit());
         timer.cr1().write(|w| w.urs().set_bit().cen().set_bit());
-        Self { timer }
+        // SAFETY: the timer's only owner gives it up here, for ever; in an emergency only CR1 is written by others.
+        #[allow(unsafe_code, reason = "the registers for ever")]
+        Self { timer: unsafe { Registers::new(TIM5::ptr()) } }
     }
 
     /// Takes the interrupt.

@@ -26,7 +26,6 @@ mod f446;
 mod pins;
 #[cfg(feature = "board-qemu")]
 mod qemu;
-#[cfg(feature = "board-qemu")]
 mod registers;
 #[cfg(not(feature = "board-qemu"))]
 mod rtt;

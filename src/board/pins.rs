@@ -10,6 +10,7 @@ use stm32f4xx_hal::pac::gpioa::RegisterBlock;
 use stm32f4xx_hal::pac::{self, EXTI};
 
 use super::chip::set_and_clear;
+use super::registers::Registers;
 use super::this;
 
 /// Where a pin is.
@@ -57,7 +58,7 @@ fn set<P: Place>(high: bool) {
 const FIRST: u32 = <this::XStep as Place>::NUMBER as u32;
 
 /// The step and direction pins.
-pub(crate) struct StepPort(());
+pub(crate) struct StepPort(Registers<RegisterBlock>);
 
 impl StepPort {
     /// Takes the pins of X step, X direction, Z step, Z direction: neighbours in one port, the first one [`this::XStep`].
@@ -76,7 +77,9 @@ impl StepPort {
         output(x_direction).set_internal_resistor(Pull::Down);
         output(z_step).set_internal_resistor(Pull::Down);
         output(z_direction).set_internal_resistor(Pull::Down);
-        Self(())
+        // SAFETY: the pins are owned here; BSRR changes no others.
+        #[allow(unsafe_code, reason = "the registers for ever")]
+        Self(unsafe { Registers::new(registers::<this::XStep>()) })
     }
 
     /// Sets all four pins in one write.
@@ -85,7 +88,7 @@ impl StepPort {
         let word = set_and_clear(event.levels(), FIRST);
         // SAFETY: BSRR changes only the pins that it names, and those are owned here; the write is atomic.
         #[allow(unsafe_code, reason = "the HAL sets pins one by one")]
-        registers::<this::XStep>().bsrr().write(|w| unsafe { w.bits(word) });
+        self.0.bsrr().write(|w| unsafe { w.bits(word) });
     }
 }
 
