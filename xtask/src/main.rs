@@ -12,6 +12,7 @@ mod gdb;
 mod graph;
 mod image;
 mod links;
+mod lints;
 mod measure;
 mod nopanic;
 mod qemu;
@@ -54,6 +55,8 @@ enum Task {
     Endless(endless::Arguments),
     /// Counts the instructions that a step costs; prints JSON.
     Measure(measure::Arguments),
+    /// Lints the firmware of one board, and checks that a build without a board, or with two, fails.
+    Lints,
     /// Checks that no panic can be reached: by linking the portable code, and in the call graph of the images.
     NoPanic {
         /// Boards whose images are checked.
@@ -70,6 +73,7 @@ fn main() -> ExitCode {
         Task::Emulate(arguments) => emulate::run(&arguments),
         Task::Endless(arguments) => endless::run(&arguments),
         Task::Measure(arguments) => measure::run(&arguments),
+        Task::Lints => lints::run(),
         Task::NoPanic { board } => {
             // the graph tells where a panic is that the linker has found
             let (linked, walked) = (nopanic::run(), graph::run(&board));

@@ -47,7 +47,7 @@ pub(crate) fn test() -> Result<(), String> {
         [("CARGO_PROFILE_RELEASE_DEBUG_ASSERTIONS", "true"), ("CARGO_PROFILE_RELEASE_OVERFLOW_CHECKS", "true")];
     cargo("tests", &["test", "--workspace", "--release", "--target-dir", "target/checked"], &checks)?;
     let tool = std::env::current_exe().map_err(|error| error.to_string())?;
-    for arguments in [&["firmware"][..], &["no-panic"], &EMULATED, &ENDLESS] {
+    for arguments in [&["lints"][..], &["firmware"], &["no-panic"], &EMULATED, &ENDLESS] {
         eprintln!("\n== cargo xtask {}", arguments.join(" "));
         let status = Command::new(&tool).args(arguments).current_dir(crate::root()).status();
         if !status.map_err(|error| error.to_string())?.success() {

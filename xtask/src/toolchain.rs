@@ -21,6 +21,7 @@ pub(crate) const TARGET: &str = "thumbv7em-none-eabihf";
 const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 const DEBIAN_CARGO: &str = "/usr/bin/cargo";
 const DEBIAN_SOURCE: &str = "/usr/lib/rustlib/src/rust/library/core/src/lib.rs";
+const DEBIAN_CLIPPY: &str = "/usr/bin/cargo-clippy";
 const PACKAGES: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
 
 /// How to compile for the chip.
@@ -50,7 +51,23 @@ impl Toolchain {
 
     /// `cargo` for the chip, with a target folder of its own (two compilers evict each other's artefacts).
     pub(crate) fn cargo(&self, arguments: &[&str]) -> Command {
-        let mut cargo = clean("cargo");
+        self.tool(clean("cargo"), arguments)
+    }
+
+    /// `cargo clippy` for the chip, of the compiler that builds for it.
+    pub(crate) fn clippy(&self, arguments: &[&str]) -> Result<Command> {
+        if matches!(self, Self::Rustup) {
+            return Ok(self.cargo(arguments));
+        }
+        if !Path::new(DEBIAN_CLIPPY).exists() {
+            apt(&["rust-web-clippy"]).context("no clippy for the chip: apt-get install rust-web-clippy")?;
+        }
+        let mut clippy = clean(DEBIAN_CLIPPY);
+        clippy.env("CARGO", DEBIAN_CARGO);
+        Ok(self.tool(clippy, arguments))
+    }
+
+    fn tool(&self, mut cargo: Command, arguments: &[&str]) -> Command {
         cargo.current_dir(crate::root());
         if let Self::Debian { sysroot } = self {
             cargo.env("RUSTC", DEBIAN_RUSTC);

@@ -80,14 +80,14 @@ mod image {
                 link.realtime(what, &mut commands_in, &status.snapshot(), &mut Out);
             }
             black_box(link.work(&mut blocks_in, &mut commands_in, &status.snapshot(), &mut Out));
-            let faults = Faults { underruns: player.underruns(), overruns: train.overruns(), late: black_box(0) };
+            let faults = Faults { underruns: train.underruns(), overruns: train.overruns(), late: black_box(0) };
             foreground.watch(faults, black_box(false));
             rehearsal.due(foreground.state(), &mut |command| foreground.obey(command));
-            let report = foreground.tick(&mut |event| train.put(event));
+            let report = foreground.tick(&mut train);
             train.publish();
             black_box((foreground.outputs(), heartbeat.beat(black_box(true), report.speed)));
             status.publish(&report, &foreground, faults);
-            black_box(player.next_or_idle());
+            black_box(player.next_or_idle(|| black_box(())));
             if cfg!(feature = "planted") {
                 let places = black_box([1, 2, 3]);
                 #[allow(clippy::indexing_slicing, reason = "planted")]
