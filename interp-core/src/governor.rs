@@ -229,14 +229,26 @@ const fn covered(from: Speed, to: Speed, clocks: u32) -> u64 {
     twice.wrapping_mul(clocks as u64) / (2 * TICK)
 }
 
-/// `part / whole` with 30 fraction bits, for `part <= whole`.
+/// `part / whole` with 30 fraction bits, for `part <= whole`, both cut to 22 bits: within 2^-20, in three divisions of
+/// 32 bits.
 const fn ratio_q30(part: u64, whole: u64) -> i64 {
     let bits = 64_u32.wrapping_sub(whole.leading_zeros());
-    let cut = bits.saturating_sub(32);
-    let (p, w) = (part.wrapping_shr(cut), whole.wrapping_shr(cut));
-    let ratio = match (p << 30).checked_div(w) {
-        Some(ratio) => ratio,
-        None => 0,
-    };
-    if ratio > RADIAN_Q30.unsigned_abs() { RADIAN_Q30 } else { ratio.cast_signed() }
+    let cut = bits.saturating_sub(22);
+    let (mut rest, whole) = (to_u32(part.wrapping_shr(cut)), to_u32(whole.wrapping_shr(cut)));
+    if rest >= whole {
+        return RADIAN_Q30;
+    }
+    let mut ratio = 0_u32;
+    let mut digit = 0;
+    while digit < 3 {
+        let dividend = rest << 10;
+        let quotient = match dividend.checked_div(whole) {
+            Some(quotient) => quotient,
+            None => 0,
+        };
+        rest = dividend.wrapping_sub(quotient.wrapping_mul(whole));
+        ratio = ratio << 10 | quotient;
+        digit = 1_u32.wrapping_add(digit);
+    }
+    ratio as i64
 }

@@ -17,8 +17,9 @@ pub const HALF_TURN_Q60: i64 = 3_622_009_729_038_561_421;
 /// assert_eq!((root(24), root(25), root(u64::MAX)), (4, 5, u32::MAX));
 /// ```
 ///
-/// Karatsuba's square root, one step: the upper half's root and its remainder give the lower half by one division of
-/// 32 bits, since half the divisor suffices. Source: P. Zimmermann, Karatsuba Square Root, INRIA RR-3805, 1999.
+/// Karatsuba's square root: the upper half's root and its remainder give the lower half by one division of 32 bits,
+/// since half the divisor suffices; twice, from a table of 8 bits. Source: P. Zimmermann, Karatsuba Square Root, INRIA
+/// RR-3805, 1999.
 pub const fn root(value: u64) -> u32 {
     if value == 0 {
         return 0;
@@ -27,13 +28,42 @@ pub const fn root(value: u64) -> u32 {
     let shift = value.leading_zeros() & !1;
     let normal = value.wrapping_shl(shift);
     let upper = (normal >> 32) as u32;
-    let high = upper.isqrt();
-    // at most 2 high, below 2^17
-    let rest = upper.wrapping_sub(high.wrapping_mul(high));
     #[expect(clippy::cast_possible_truncation, reason = "the lower half")]
     let lower = normal as u32;
-    let dividend = (rest as u64) << 16 | (lower >> 16) as u64;
-    // high is at least 2^15, so the quotient is at most 2^16
+    let top = upper >> 16;
+    let first = first_root(top);
+    let (high, rest) = lower_half(first, top.wrapping_sub(first.wrapping_mul(first)), upper & 0xFFFF, 8);
+    let (root, _) = lower_half(high, rest, lower, 16);
+    root.wrapping_shr(shift >> 1)
+}
+
+/// Root of 16 bits, the upper two not both 0.
+#[expect(clippy::indexing_slicing, reason = "a constant function has no `get`; the index is checked")]
+const fn first_root(value: u32) -> u32 {
+    let index = ((value >> 8) as usize).wrapping_sub(64);
+    let root = if index < ROOTS.len() { ROOTS[index] as u32 } else { 255 };
+    // the table knows the upper byte only
+    let next = root.wrapping_add(1);
+    if next.wrapping_mul(next) <= value { next } else { root }
+}
+
+/// Roots of 64 to 255, times 16, rounded down.
+#[expect(clippy::indexing_slicing, clippy::cast_possible_truncation, reason = "constants: 192 roots below 256")]
+const ROOTS: [u8; 192] = {
+    let mut roots = [0; 192];
+    let mut n = 0_u32;
+    while n < 192 {
+        roots[n as usize] = n.wrapping_add(64).wrapping_shl(8).isqrt() as u8;
+        n = n.wrapping_add(1);
+    }
+    roots
+};
+
+/// A root of twice `bits` bits and its remainder, from the upper half's root and remainder and the lower half of the
+/// value. The upper half's upper two bits are not both 0.
+const fn lower_half(high: u32, rest: u32, lower: u32, bits: u32) -> (u32, u32) {
+    // the remainder is at most twice the root, so the dividend has at most twice `bits` and one bits more
+    let dividend = (rest as u64).wrapping_shl(bits) | lower.wrapping_shr(bits) as u64;
     #[expect(clippy::cast_possible_truncation, reason = "below 2^32")]
     let halved = (dividend >> 1) as u32;
     let half = match halved.checked_div(high) {
@@ -41,11 +71,19 @@ pub const fn root(value: u64) -> u32 {
         None => 0,
     };
     let remainder = dividend.wrapping_sub((half as u64).wrapping_mul(high as u64) << 1);
-    let left = remainder << 16 | (lower & 0xFFFF) as u64;
-    let root = (high << 16).wrapping_add(half);
+    let left = remainder.wrapping_shl(bits) | (lower & 1_u32.wrapping_shl(bits).wrapping_sub(1)) as u64;
+    let root = high.wrapping_shl(bits).wrapping_add(half);
     let square = (half as u64).wrapping_mul(half as u64);
-    let root = if left < square { root.wrapping_sub(1) } else { root };
-    root.wrapping_shr(shift >> 1)
+    // one too many: the remainder grows by twice the smaller root and one
+    let (root, left) = if left < square {
+        let root = root.wrapping_sub(1);
+        (root, left.wrapping_add((root as u64) << 1 | 1))
+    } else {
+        (root, left)
+    };
+    #[expect(clippy::cast_possible_truncation, reason = "a remainder that is used is below 2^18")]
+    let rest = left.wrapping_sub(square) as u32;
+    (root, rest)
 }
 
 /// Floor of the square root, wide.
