@@ -7,8 +7,8 @@
 //!
 //! A **step event** is an event with at least one rising edge; its falling edge is part of its cost. Means are over
 //! all ticks at full speed (at least 95 % of the steps of the busiest tick); the worst is the costliest of them. What
-//! `interpolate` takes besides steps is the cost at no step of the straight line through the costs of the cycle's
-//! moving ticks. Entry and exit of an interrupt are no instructions; the chip's share counts them as 24 clocks a call,
+//! `interpolate` takes for each step event more is told from a slow and a fast case of the same curve; the rest of a
+//! tick is what it takes besides steps, where a block begins or the tool brakes more than at full speed. Entry and exit of an interrupt are no instructions; the chip's share counts them as 24 clocks a call,
 //! and an instruction as 1.35 clocks of 168 MHz.
 
 use std::fs;
@@ -102,9 +102,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     };
     let folder = tempfile::tempdir()?;
     let plugin = compile(folder.path())?;
-    let mut cases = Map::new();
+    let mut counted = Vec::new();
     for case in &CASES {
-        cases.insert(case.0.into(), measure(&elf, &plugin, folder.path(), case).with_context(|| case.0)?);
+        counted.push((case.0, measure(&elf, &plugin, folder.path(), case).with_context(|| case.0)?));
+    }
+    let mut cases = Map::new();
+    for (name, counts) in &counted {
+        // the two cases of one curve with the fewest and the most steps a tick
+        let kin = counted.iter().filter(|(other, _)| other.split(' ').next() == name.split(' ').next());
+        let per_step = slope(kin.map(|(_, counts)| counts));
+        cases.insert((*name).into(), figures(counts, per_step));
     }
     let report = json!({ "unit": "executed instructions", "cases": cases, "boards": sizes });
     println!("{}", serde_json::to_string_pretty(&report)?);
@@ -144,7 +151,7 @@ struct Tick {
     interpolate: u64,
 }
 
-fn measure(elf: &Path, plugin: &Path, folder: &Path, case: &Case) -> Result<Value> {
+fn measure(elf: &Path, plugin: &Path, folder: &Path, case: &Case) -> Result<Counts> {
     let Case(_, program, parameters) = case;
     let counts = folder.join("counts");
     let image = Image::read(elf)?;
@@ -165,34 +172,77 @@ fn measure(elf: &Path, plugin: &Path, folder: &Path, case: &Case) -> Result<Valu
     if of("anomalies")? != [0] {
         bail!("the plugin met calls that it does not understand");
     }
-    figures(&played, &of("TIM5")?, &of("I2C3_ER")?)
+    Counts::new(&played, &of("TIM5")?, &of("I2C3_ER")?)
 }
 
-fn figures(played: &Played, pulse: &[u64], interpolate: &[u64]) -> Result<Value> {
-    let mut ticks = Vec::new();
-    let mut at = usize::try_from(played.events_before)?;
-    let first = usize::try_from(played.ticks_before)?;
-    for (number, (events, steps)) in played.ticks.iter().enumerate() {
-        let calls = pulse.get(at..at + events).context("the plugin saw fewer events than were played")?;
-        let made = *interpolate.get(first + number).context("the plugin saw fewer ticks than were played")?;
-        ticks.push(Tick { steps: *steps as u64, events: *events as u64, pulse: calls.iter().sum(), interpolate: made });
-        at += events;
+/// What was counted in one case.
+struct Counts {
+    ticks: Vec<Tick>,
+    /// Of each call of `pulse`.
+    calls: Vec<u64>,
+    /// Step events of the busiest tick.
+    most: u64,
+}
+
+impl Counts {
+    fn new(played: &Played, pulse: &[u64], interpolate: &[u64]) -> Result<Self> {
+        let mut ticks = Vec::new();
+        let before = usize::try_from(played.events_before)?;
+        let mut at = before;
+        let first = usize::try_from(played.ticks_before)?;
+        for (number, (events, steps)) in played.ticks.iter().enumerate() {
+            let calls = pulse.get(at..at + events).context("the plugin saw fewer events than were played")?;
+            let made = *interpolate.get(first + number).context("the plugin saw fewer ticks than were played")?;
+            let (steps, events) = (*steps as u64, *events as u64);
+            ticks.push(Tick { steps, events, pulse: calls.iter().sum(), interpolate: made });
+            at += usize::try_from(events)?;
+        }
+        let most = ticks.iter().map(|tick| tick.steps).max().unwrap_or(0);
+        if most == 0 {
+            bail!("nothing moved");
+        }
+        Ok(Self { ticks, calls: pulse.get(before..at).unwrap_or_default().to_vec(), most })
     }
-    let most = ticks.iter().map(|tick| tick.steps).max().unwrap_or(0);
-    if most == 0 {
-        bail!("nothing moved");
+
+    /// Ticks at full speed.
+    fn full(&self) -> Vec<Tick> {
+        self.ticks.iter().copied().filter(|tick| tick.steps * 100 >= self.most * 95).collect()
     }
-    let full: Vec<Tick> = ticks.iter().copied().filter(|tick| tick.steps * 100 >= most * 95).collect();
+
+    /// Steps and instructions of a usual tick at full speed.
+    fn usual(&self) -> (f64, f64) {
+        let mut full = self.full();
+        full.sort_by_key(|tick| tick.interpolate);
+        let tick = full.get(full.len() / 2).copied().unwrap_or_default();
+        (tick.steps as f64, tick.interpolate as f64)
+    }
+}
+
+/// What `interpolate` takes for each step event more: from the usual ticks of the slowest and the fastest case.
+fn slope<'a>(cases: impl Iterator<Item = &'a Counts>) -> f64 {
+    let mut usual: Vec<(f64, f64)> = cases.map(Counts::usual).collect();
+    usual.sort_by(|a, b| a.0.total_cmp(&b.0));
+    match (usual.first(), usual.last()) {
+        (Some(slow), Some(fast)) if fast.0 > slow.0 => (fast.1 - slow.1) / (fast.0 - slow.0),
+        _ => 0.0,
+    }
+}
+
+fn figures(counts: &Counts, per_step: f64) -> Value {
+    let (ticks, most, full) = (&counts.ticks, counts.most, counts.full());
     // the programs begin with a dwell; its first tick takes the block
     let idle: Vec<Tick> =
         ticks.iter().take_while(|tick| tick.steps == 0).skip(2).map(|tick| Tick { steps: 1, ..*tick }).collect();
     let idle = idle.get(..idle.len().saturating_sub(1)).unwrap_or_default().to_vec();
-    let calls = pulse.get(usize::try_from(played.events_before)?..at).unwrap_or_default();
-    let mut moving: Vec<Tick> = ticks.iter().copied().filter(|tick| tick.steps > 0).collect();
-    // the first and the last moving tick begin and end a block
-    moving.pop();
-    let (fixed, per_step) = line(moving.get(1..).unwrap_or_default());
-    Ok(json!({
+    let calls = &counts.calls;
+    let fixed: Vec<f64> = ticks
+        .iter()
+        .filter(|tick| tick.steps > 0)
+        .map(|tick| (tick.interpolate as f64 - per_step * tick.steps as f64).max(0.0))
+        .collect();
+    let mean = fixed.iter().sum::<f64>() / fixed.len().max(1) as f64;
+    let (steps, cost) = counts.usual();
+    json!({
         "step_events_per_tick": most,
         "interrupts_per_step_event": rounded(ratio(&full, |tick| (tick.events + 1) as f64, |tick| tick.steps as f64)),
         "per_step_event": {
@@ -203,8 +253,12 @@ fn figures(played: &Played, pulse: &[u64], interpolate: &[u64]) -> Result<Value>
         "per_call_of_pulse": { "mean": rounded(calls.iter().sum::<u64>() as f64 / calls.len().max(1) as f64), "worst": calls.iter().max() },
         "per_tick_of_interpolate": {
             "worst": ticks.iter().map(|tick| tick.interpolate).max(),
-            "fixed": rounded(fixed),
             "for_each_step_event": rounded(per_step),
+            "besides": {
+                "at_full_speed": rounded(cost - per_step * steps),
+                "mean": rounded(mean),
+                "worst": rounded(fixed.iter().copied().fold(0.0, f64::max)),
+            },
         },
         "per_idle_tick": {
             "pulse": mean_and_worst(&idle, |tick| tick.pulse),
@@ -215,7 +269,7 @@ fn figures(played: &Played, pulse: &[u64], interpolate: &[u64]) -> Result<Value>
             "mean": rounded(ratio(&full, percent, |_| 1.0)),
             "worst": rounded(full.iter().map(percent).fold(0.0, f64::max)),
         },
-    }))
+    })
 }
 
 /// What a tick's interrupts take of the chip, percent.
@@ -237,17 +291,6 @@ fn mean_and_worst(ticks: &[Tick], cost: impl Fn(&Tick) -> u64) -> Value {
     let all: u64 = ticks.iter().map(&cost).sum();
     let worst = ticks.iter().map(|tick| cost(tick) as f64 / tick.steps.max(1) as f64).fold(0.0, f64::max);
     json!({ "mean": rounded(all as f64 / steps.max(1) as f64), "worst": rounded(worst) })
-}
-
-/// The straight line through the costs of `interpolate` over the steps of a tick: at none, and for each.
-fn line(ticks: &[Tick]) -> (f64, f64) {
-    let count = ticks.len().max(1) as f64;
-    let mean = |of: &dyn Fn(&Tick) -> f64| ticks.iter().map(of).sum::<f64>() / count;
-    let (steps, cost) = (mean(&|tick| tick.steps as f64), mean(&|tick| tick.interpolate as f64));
-    let product = mean(&|tick| (tick.steps as f64 - steps) * (tick.interpolate as f64 - cost));
-    let square = mean(&|tick| (tick.steps as f64 - steps).powi(2));
-    let slope = if square > 0.0 { product / square } else { 0.0 };
-    (cost - slope * steps, slope)
 }
 
 fn rounded(value: f64) -> f64 {
