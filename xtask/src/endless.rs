@@ -269,18 +269,20 @@ impl Test<'_> {
         for place in &wanted {
             debugger.break_at(*place)?;
         }
-        let mut void = false;
         let function = loop {
             if !debugger.go(&|| rig.is_over())? {
-                return Ok(if void { Stop::Void } else { Stop::Nowhere });
+                return Ok(Stop::Nowhere);
             }
             let place = debugger.place()?;
-            let background = debugger.exception()? == self.exception;
-            void |= !background;
-            let is_left = |set: &mut BTreeSet<u32>| if void && background { false } else { set.remove(&place) };
-            if self.left.lock().is_ok_and(|mut left| is_left(&mut left)) && background {
+            let is_left = self.left.lock().is_ok_and(|mut left| left.remove(&place));
+            if debugger.exception()? != self.exception {
+                println!("point {number} again: {} runs in the foreground, too", self.name(place));
+                return Ok(Stop::Void);
+            }
+            if is_left {
                 break place;
             }
+            // the other run has met it meanwhile
             debugger.pass(place)?;
             wanted.remove(&place);
         };

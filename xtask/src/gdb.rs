@@ -7,7 +7,7 @@
 use std::io::{BufReader, ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result, bail};
 
@@ -128,6 +128,7 @@ impl Debugger {
     /// Goes on to the next breakpoint. False where none is met before `over` says so: the core runs then.
     pub(crate) fn go(&mut self, over: &dyn Fn() -> bool) -> Result<bool> {
         self.writer.write_all(b"$c#63")?;
+        let began = Instant::now();
         self.writer.set_read_timeout(Some(Duration::from_millis(20)))?;
         let stopped = loop {
             match self.byte() {
@@ -135,6 +136,7 @@ impl Debugger {
                 Err(error) if !matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => Err(error)?,
                 Ok(_) => {}
                 Err(_) if over() => break false,
+                Err(_) if began.elapsed() > WAIT => bail!("the core neither goes on nor stops"),
                 Err(_) => {}
             }
         };
