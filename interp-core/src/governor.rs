@@ -70,7 +70,9 @@ impl Bend {
             return Heading { sine: 0, cosine: RADIAN_Q30 };
         }
         let sine = ratio_q30(squared.min(self.full), self.full);
-        Heading { sine, cosine: cosine_from_sine(sine) }
+        // below 2^-15 the cosine is one to the last bit
+        let cosine = if sine < 1 << 15 { RADIAN_Q30 } else { cosine_from_sine(sine) };
+        Heading { sine, cosine }
     }
 
     /// `a R sin(2 s / R + asin(w_end / a R))`, at most `a R`.
@@ -141,12 +143,16 @@ impl Motion {
     /// `target`, so that the end can be met at the squared speed `exit`.
     #[inline(never)]
     pub fn advance(&self, speed: Speed, left: u64, exit: u64, target: Speed, clocks: u32) -> Advance {
-        let rise = part(self.along(speed), clocks).max(1);
         // toward the target no harder than turning leaves room for; for the exit as hard as it takes, which the plan
         // keeps within that room except for what a tick rounds
-        let wish = target.max(speed.saturating_sub(rise)).min(speed.saturating_add(rise));
+        let wish = if speed == target {
+            target
+        } else {
+            let rise = part(self.along(speed), clocks).max(1);
+            target.max(speed.saturating_sub(rise)).min(speed.saturating_add(rise))
+        };
         let slowest = speed.saturating_sub(part(self.accel, clocks).max(1));
-        let ending = self.ending(speed, wish, left, exit, rise, clocks);
+        let ending = self.ending(speed, wish, left, exit, clocks);
         let end = wish.min(ending).max(slowest);
         let length = covered(speed, end, clocks);
         if length < left {
@@ -179,9 +185,9 @@ impl Motion {
 
     /// The largest speed at the end of a stretch from which the exit can still be met, where that is below `wish`; else
     /// any from `wish` on.
-    fn ending(&self, speed: Speed, wish: Speed, left: u64, exit: u64, rise: u32, clocks: u32) -> Speed {
+    fn ending(&self, speed: Speed, wish: Speed, left: u64, exit: u64, clocks: u32) -> Speed {
         match self.bend() {
-            None => self.brake_straight(speed, left, exit, rise),
+            None => self.brake_straight(speed, left, exit, part(self.straight(), clocks).max(1)),
             Some(bend) => {
                 // the speed allowed depends on how far the stretch leads, which depends on the speed: two rounds
                 let heading = bend.heading(exit);
@@ -201,7 +207,7 @@ impl Motion {
 
     /// Whether a whole tick at an even `speed`, `left` before the end, leaves room to brake to standstill there.
     pub fn can_keep(&self, speed: Speed, left: u64) -> bool {
-        left > u64::from(speed) && self.ending(speed, speed, left, 0, self.accel.max(1), TICK_CLOCKS) >= speed
+        left > u64::from(speed) && self.ending(speed, speed, left, 0, TICK_CLOCKS) >= speed
     }
 
     /// The end speed of a stretch in which the speed changes by at most `rise`, after which constant braking still

@@ -30,11 +30,43 @@ pub const fn root(value: u64) -> u32 {
     let upper = (normal >> 32) as u32;
     #[expect(clippy::cast_possible_truncation, reason = "the lower half")]
     let lower = normal as u32;
-    let top = upper >> 16;
-    let first = first_root(top);
-    let (high, rest) = lower_half(first, top.wrapping_sub(first.wrapping_mul(first)), upper & 0xFFFF, 8);
-    let (root, _) = lower_half(high, rest, lower, 16);
+    let (high, rest) = half_root(upper);
+    // the remainder is at most twice the root, so the dividend is below 2^33
+    let dividend = (rest as u64) << 16 | (lower >> 16) as u64;
+    #[expect(clippy::cast_possible_truncation, reason = "below 2^32")]
+    let halved = (dividend >> 1) as u32;
+    let half = match halved.checked_div(high) {
+        Some(quotient) => quotient,
+        None => 0,
+    };
+    // what is left fits 17 bits, so it may be computed modulo 2^32
+    let left = (rest << 16 | lower >> 16).wrapping_sub(half.wrapping_mul(high) << 1);
+    let left = (left as u64) << 16 | (lower & 0xFFFF) as u64;
+    let root = (high << 16).wrapping_add(half);
+    // one too many where the square of the lower half is not left
+    let root = if left < (half as u64).wrapping_mul(half as u64) { root.wrapping_sub(1) } else { root };
     root.wrapping_shr(shift >> 1)
+}
+
+/// Root and remainder of 32 bits, the upper two not both 0.
+const fn half_root(value: u32) -> (u32, u32) {
+    let top = value >> 16;
+    let high = first_root(top);
+    let dividend = top.wrapping_sub(high.wrapping_mul(high)) << 8 | value >> 8 & 0xFF;
+    let half = match dividend.checked_div(high << 1) {
+        Some(quotient) => quotient,
+        None => 0,
+    };
+    let left = dividend.wrapping_sub(half.wrapping_mul(high) << 1) << 8 | value & 0xFF;
+    let root = (high << 8).wrapping_add(half);
+    let square = half.wrapping_mul(half);
+    if left < square {
+        // the remainder grows by twice the smaller root and one
+        let root = root.wrapping_sub(1);
+        (root, left.wrapping_sub(square).wrapping_add(root << 1 | 1))
+    } else {
+        (root, left.wrapping_sub(square))
+    }
 }
 
 /// Root of 16 bits, the upper two not both 0.
@@ -58,33 +90,6 @@ const ROOTS: [u8; 192] = {
     }
     roots
 };
-
-/// A root of twice `bits` bits and its remainder, from the upper half's root and remainder and the lower half of the
-/// value. The upper half's upper two bits are not both 0.
-const fn lower_half(high: u32, rest: u32, lower: u32, bits: u32) -> (u32, u32) {
-    // the remainder is at most twice the root, so the dividend has at most twice `bits` and one bits more
-    let dividend = (rest as u64).wrapping_shl(bits) | lower.wrapping_shr(bits) as u64;
-    #[expect(clippy::cast_possible_truncation, reason = "below 2^32")]
-    let halved = (dividend >> 1) as u32;
-    let half = match halved.checked_div(high) {
-        Some(quotient) => quotient,
-        None => 0,
-    };
-    let remainder = dividend.wrapping_sub((half as u64).wrapping_mul(high as u64) << 1);
-    let left = remainder.wrapping_shl(bits) | (lower & 1_u32.wrapping_shl(bits).wrapping_sub(1)) as u64;
-    let root = high.wrapping_shl(bits).wrapping_add(half);
-    let square = (half as u64).wrapping_mul(half as u64);
-    // one too many: the remainder grows by twice the smaller root and one
-    let (root, left) = if left < square {
-        let root = root.wrapping_sub(1);
-        (root, left.wrapping_add((root as u64) << 1 | 1))
-    } else {
-        (root, left)
-    };
-    #[expect(clippy::cast_possible_truncation, reason = "a remainder that is used is below 2^18")]
-    let rest = left.wrapping_sub(square) as u32;
-    (root, rest)
-}
 
 /// Floor of the square root, wide.
 pub const fn root_wide(value: u128) -> u64 {

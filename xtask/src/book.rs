@@ -56,7 +56,9 @@ fn tables(report: &Value) -> Result<String> {
         let [one, more] = rates(all, interrupts);
         writeln!(text, "| {name} | | | **{all:.1}** | | {interrupts:.1} | {one:.0} | {more:.0} | |")?;
     }
-    text.push_str("\n| | besides steps, at full speed | mean | worst | idle tick | worst `pulse` | worst `interpolate` |\n");
+    text.push_str(
+        "\n| | besides steps, at full speed | mean | worst | idle tick | worst `pulse` | worst `interpolate` |\n",
+    );
     text.push_str("| --- | --- | --- | --- | --- | --- | --- |\n");
     for (name, case) in cases {
         writeln!(

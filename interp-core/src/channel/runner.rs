@@ -147,7 +147,6 @@ impl LineRunner {
 #[derive(Clone, Debug)]
 pub(super) struct ArcRunner {
     walker: ArcWalker,
-    arc: Arc,
     length: u64,
     /// Length reached.
     reached: u64,
@@ -167,7 +166,6 @@ impl ArcRunner {
     fn new(arc: &Arc, length: u64) -> Self {
         let mut runner = Self {
             walker: arc.walk(),
-            arc: *arc,
             length,
             reached: 0,
             zone_from: 0,
@@ -184,7 +182,7 @@ impl ArcRunner {
 
     /// Sets the zone up that the walker has just entered, `from` along the arc at `angle` from its middle.
     fn enter_zone(&mut self, from: u64, angle: i64) {
-        let timeline = &self.arc.timeline;
+        let timeline = &self.walker.arc().timeline;
         let octant = self.walker.octant();
         let [radius_x, radius_z] = timeline.radius_pulses;
         let [half_x, half_z] = timeline.half_width;
@@ -204,7 +202,7 @@ impl ArcRunner {
         self.at = self.coordinate(from);
         let (x, z) = self.walker.target();
         let [centre_x, centre_z] = timeline.centre;
-        let (sign_x, sign_z) = Arc::signs(octant, self.arc.sense);
+        let (sign_x, sign_z) = Arc::signs(octant, self.walker.arc().sense);
         let (line, centre, sign) = match Arc::major(octant) {
             Axis::X => (x, centre_x, sign_x),
             Axis::Z => (z, centre_z, sign_z),
@@ -216,7 +214,7 @@ impl ArcRunner {
 
     /// Coordinate of the major axis from the centre in the direction of travel, `length` along the arc.
     fn coordinate(&self, length: u64) -> i64 {
-        let turned = self.arc.timeline.angle.of(length.wrapping_sub(self.zone_from)).cast_signed();
+        let turned = self.walker.arc().timeline.angle.of(length.wrapping_sub(self.zone_from)).cast_signed();
         let place = sine(self.angle.wrapping_add(turned)).wrapping_mul(self.radius);
         // 30 fraction bits of the sine go; the shift brings the cut-off bits back
         place.wrapping_shr(30_u32.wrapping_sub(self.radius_shift))
@@ -301,7 +299,7 @@ impl ArcRunner {
             sink.step(clock, made);
         }
         // the next zone's major axis is the other one, and its near end lies half its width before its middle
-        let [half_x, half_z] = self.arc.timeline.half_width;
+        let [half_x, half_z] = self.walker.arc().timeline.half_width;
         let half = match Arc::major(self.walker.octant()) {
             Axis::X => half_x,
             Axis::Z => half_z,

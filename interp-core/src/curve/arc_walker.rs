@@ -88,6 +88,12 @@ impl ArcWalker {
         (self.x, self.z)
     }
 
+    /// The arc that it walks.
+    #[inline]
+    pub(crate) const fn arc(&self) -> &Arc {
+        &self.arc
+    }
+
     /// The octant that the walker is in.
     pub(crate) const fn octant(&self) -> u8 {
         self.octant
