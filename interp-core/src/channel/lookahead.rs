@@ -70,11 +70,15 @@ impl<const N: usize> Lookahead<N> {
         }
     }
 
-    /// Takes the next block, with the squared speed at which it may be entered.
-    pub fn pop(&mut self) -> Option<(Block, u64)> {
-        let next = self.blocks.pop_front()?;
+    /// The next block, with the squared speed at which it may be entered.
+    pub fn next(&self) -> Option<(&Block, u64)> {
+        self.blocks.front().map(|next| (&next.block, next.entry))
+    }
+
+    /// Takes the next block away.
+    pub fn skip(&mut self) {
+        let _ = self.blocks.pop_front();
         self.fresh = self.fresh.min(self.blocks.len());
-        Some((next.block, next.entry))
     }
 
     /// Forgets all.

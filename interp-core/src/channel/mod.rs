@@ -311,17 +311,36 @@ impl<const N: usize> Channel<N> {
         if !matches!(self.state, State::Running) && self.speed == 0 {
             return Next::Stands;
         }
-        let Some((block, entry)) = self.ahead.pop() else {
+        let Some((block, entry)) = self.ahead.next() else {
             self.state = State::Filling;
             return Next::Stands;
         };
         self.line = block.line;
+        // a motion is large: it is copied once, from the look-ahead to where it is executed
         match block.work {
-            Work::Motion(motion) => self.begin(motion, entry),
+            Work::Motion(ref motion) => {
+                self.speed = if self.speed == 0 {
+                    root(entry)
+                } else {
+                    // what braking could not shed of a lowered feed goes on; what the machine can't take does not
+                    self.speed.min(motion.joint).min(motion.limit)
+                };
+                self.current = Current::Motion(Active {
+                    runner: Runner::new(&motion.curve, motion.length),
+                    done: 0,
+                    pace: pace(motion, self.feed_override),
+                    paced_at: self.feed_override,
+                    cruise: Cruise::new(),
+                    motion: *motion,
+                });
+            }
             Work::Dwell(ticks) => {
                 self.current = Current::Dwell(u64::from(ticks).wrapping_mul(u64::from(TICK_CLOCKS)));
             }
-            Work::Output(output) => return Next::Output(output),
+            Work::Output(output) => {
+                self.ahead.skip();
+                return Next::Output(output);
+            }
             Work::Stop => self.state = State::Stopped,
             Work::OptionalStop if self.optional_stop => self.state = State::Stopped,
             Work::OptionalStop => {}
@@ -330,6 +349,7 @@ impl<const N: usize> Channel<N> {
                 self.line = 0;
             }
         }
+        self.ahead.skip();
         Next::Goes
     }
 
@@ -340,19 +360,6 @@ impl<const N: usize> Channel<N> {
         self.complete = false;
         self.line = 0;
         self.state = State::Idle;
-    }
-
-    /// Begins a motion: from standstill at its start speed, else at the speed that the one before left with.
-    fn begin(&mut self, motion: Motion, entry: u64) {
-        self.speed = if self.speed == 0 {
-            root(entry)
-        } else {
-            // what braking could not shed of a lowered feed goes on; what the machine can't take does not
-            self.speed.min(motion.joint).min(motion.limit)
-        };
-        let runner = Runner::new(&motion.curve, motion.length);
-        let (pace, paced_at) = (pace(&motion, self.feed_override), self.feed_override);
-        self.current = Current::Motion(Active { motion, runner, done: 0, pace, paced_at, cruise: Cruise::new() });
     }
 
     /// Advances the motion from `clock` on; the clocks used, or `None` where it stands for the rest of the tick.
