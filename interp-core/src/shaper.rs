@@ -162,6 +162,9 @@ impl Shaper {
         out: &mut impl Train,
     ) -> Made {
         let mut made = Made { steps: 0, diagonals: 0 };
+        if !strides.agree(self.levels) {
+            self.face(strides, times.clock(), out);
+        }
         let Some(row) = self.row(times, count, strides, out) else { return made };
         let low = u32::from(self.levels.bits()) << 16;
         let [straight, diagonal] = strides.raised;
@@ -202,6 +205,22 @@ impl Shaper {
             self.z.made(diagonal_at, width);
         }
         made
+    }
+
+    /// Turns the directions that the steps to come need, as far as there is time before the next one, at `due`: an axis
+    /// whose first step comes later then need not wait for the set-up time.
+    #[cold]
+    pub fn face(&mut self, strides: &Strides, due: i32, out: &mut impl Train) {
+        for axis in [Axis::X, Axis::Z] {
+            let Some(plus) = strides.turned(axis, self.levels) else { continue };
+            self.fall_until(due, out);
+            let low = self.x.fall == NEVER && self.z.fall == NEVER;
+            let free = self.pins(axis).free;
+            let at = self.placed(free.max(self.began.wrapping_add(self.event_min)));
+            if low && at.wrapping_add(self.event_min) <= due {
+                self.turn(axis, plus, out);
+            }
+        }
     }
 
     /// How many of the `count` steps due at `times` touch no rule.

@@ -60,7 +60,10 @@ impl Run {
     /// Step by step.
     fn singly(&self, shaper: &mut Shaper, out: &mut impl FnMut(Event)) {
         let mut times = Times { time: self.time, spacing: self.spacing };
+        let [straight, diagonal] = self.kinds();
+        let strides = Strides::new(straight, diagonal);
         for n in 0..self.count {
+            shaper.face(&strides, times.clock(), out);
             let step = self.kinds()[usize::from(self.turns(n))];
             shaper.step(times.take(), step.x, step.z, out);
         }

@@ -70,9 +70,11 @@ const FAST: [&str; 10] = [
     "z.min_space_ns=2000",
 ];
 
-const CASES: [Case; 5] = [
+const CASES: [Case; 6] = [
     Case("line 4:3, X at 80 kHz", "G21 G90\nG4 P0.05\nG1 X40 Z30 F6000\nM2\n", &PULSES),
     Case("arc, R 10 mm, 25 kHz", "G21 G90\nG4 P0.05\nG3 X-10 Z-10 I-10 K0 F1500\nM2\n", &PULSES),
+    // its centre lies between the lattice lines, so the walk needs 64 bits
+    Case("arc, R 10 mm by R, 25 kHz", "G21 G90\nG4 P0.05\nG3 X-12 Z-11 R10 F1500\nM2\n", &PULSES),
     Case("line 1:1, 71 kHz", "G21 G90\nG4 P0.05\nG1 X30 Z30 F6000\nM2\n", &PULSES),
     Case("line 4:3, X at 200 kHz", "G21 G90\nG4 P0.05\nG0 X80 Z60\nM2\n", &FAST),
     Case("arc, R 50 mm, 200 kHz", "G21 G90\nG4 P0.05\nG3 X-50 Z-50 I-50 K0 F12000\nM2\n", &FAST),

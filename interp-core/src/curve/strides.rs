@@ -51,6 +51,12 @@ impl Strides {
         levels.bits() & self.directions.bits() == self.plus.bits()
     }
 
+    /// The direction that an axis has to take, plus or not, where `levels` have the other one.
+    pub(crate) const fn turned(&self, axis: Axis, levels: Levels) -> Option<bool> {
+        let plus = self.plus.plus(axis);
+        if self.directions.plus(axis) && levels.plus(axis) != plus { Some(plus) } else { None }
+    }
+
     /// How far `steps` steps lead, `diagonals` of them diagonal: X and Z.
     #[inline]
     pub(crate) const fn lead(&self, steps: u32, diagonals: u32) -> (i32, i32) {
