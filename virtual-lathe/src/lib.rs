@@ -5,6 +5,10 @@
 //! an independent checker (the crate `measure`) and draws what the pulses did ([`picture`]). [`turn`] puts that
 //! together as the command `turn`. [`serve`] runs the same lathe for a sender at a TCP port.
 
+pub mod course;
+pub mod dimensions;
+pub mod examples;
+pub mod gallery;
 pub mod insets;
 pub mod lathe;
 pub mod machine_file;
@@ -16,8 +20,10 @@ pub mod program;
 pub mod report;
 pub mod serve;
 pub mod settings;
+pub mod sheets;
 pub mod turn;
 pub mod watch;
+pub mod work;
 
-/// The embedded demo program: a handle.
+/// The embedded demo program: a handle, roughed and finished from bar.
 pub const DEMO: &[u8] = include_bytes!("demo/handle.nc");

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use feature_editor::codes::Format;
-use virtual_lathe::serve;
 use virtual_lathe::turn::{self, Job};
+use virtual_lathe::{gallery, serve};
 
 /// HandCNC's virtual lathe: runs programs through the firmware's own code, measures and draws the pulses.
 #[derive(Parser)]
@@ -23,6 +23,8 @@ enum Command {
     Turn(Turn),
     /// Run the lathe for a sender of G-code (Grbl 1.1 protocol) at a TCP port of this computer, until Ctrl-C.
     Serve(Serve),
+    /// Run the programs that come with the lathe, and show them on one page.
+    Examples(Examples),
     /// List all parameters with units, ranges and defaults.
     Parameters,
 }
@@ -49,6 +51,15 @@ struct Turn {
     /// Draw the path (SVG or PNG by the name's ending). Without any output option out/NAME.svg and .png are drawn.
     #[arg(long, value_name = "FILE.svg|png", value_parser = picture_file)]
     picture: Option<PathBuf>,
+    /// Draw how far the cut surface is from the contour, magnified.
+    #[arg(long, value_name = "FILE.svg|png", value_parser = picture_file)]
+    error_picture: Option<PathBuf>,
+    /// Draw speed, acceleration and pulse rate over time.
+    #[arg(long, value_name = "FILE.svg|png", value_parser = picture_file)]
+    motion_picture: Option<PathBuf>,
+    /// Show the cut, as an animated picture.
+    #[arg(long, value_name = "FILE.gif|png", value_parser = animation_file)]
+    animate: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -65,6 +76,13 @@ struct Serve {
     /// One parameter; beats the machine file. `parameters` lists them.
     #[arg(long, value_name = "NAME=VALUE", value_parser = name_and_value)]
     set: Vec<(String, String)>,
+}
+
+#[derive(Args)]
+struct Examples {
+    /// Where the page goes.
+    #[arg(long, value_name = "FILE.html", default_value = "out/examples.html")]
+    page: PathBuf,
 }
 
 #[derive(Copy, Clone, Default, ValueEnum)]
@@ -86,12 +104,21 @@ fn name_and_value(text: &str) -> Result<(String, String), String> {
 }
 
 fn picture_file(text: &str) -> Result<PathBuf, String> {
+    ending_in(text, ["svg", "png"])
+}
+
+fn animation_file(text: &str) -> Result<PathBuf, String> {
+    ending_in(text, ["gif", "png"])
+}
+
+fn ending_in(text: &str, endings: [&str; 2]) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-    match ending.as_deref().and_then(|ending| ending.to_str()) {
-        Some("svg" | "png") => Ok(path),
-        _ => Err("the name must end in .svg or .png".into()),
+    if endings.iter().any(|known| ending.as_deref() == Some(known.as_ref())) {
+        return Ok(path);
     }
+    let [a, b] = endings;
+    Err(format!("the name must end in .{a} or .{b}"))
 }
 
 fn main() -> ExitCode {
@@ -109,6 +136,9 @@ fn main() -> ExitCode {
             trace: options.trace,
             report: options.report,
             picture: options.picture,
+            error_picture: options.error_picture,
+            motion_picture: options.motion_picture,
+            animate: options.animate,
         })),
         Command::Serve(options) => ExitCode::from(serve::serve(&serve::Job {
             port: options.tcp,
@@ -116,6 +146,7 @@ fn main() -> ExitCode {
             machine: options.machine,
             set: options.set,
         })),
+        Command::Examples(options) => ExitCode::from(gallery::write(&options.page)),
         Command::Parameters => {
             // a reader that has gone is no failure
             let _ = std::io::stdout().lock().write_all(virtual_lathe::report::parameters().as_bytes());

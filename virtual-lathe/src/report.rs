@@ -9,9 +9,13 @@ use measure::{PerAxis, Report};
 use serde_json::{Map, Value, json};
 
 use crate::settings::TABLES;
+use crate::work::{Times, Worked};
+
+/// Collisions that a person is told of; the report has all that are kept.
+const COLLISIONS_TOLD: usize = 8;
 
 /// Figures that the checker does not have.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Run {
     /// Program blocks that move.
     pub blocks: u64,
@@ -36,7 +40,7 @@ fn rounded(value: f64, decimals: i32) -> f64 {
 }
 
 /// The report as JSON, keys in a fixed order.
-pub fn json(report: &Report, run: &Run) -> String {
+pub fn json(report: &Report, worked: &Worked, run: &Run) -> String {
     let feed = match &report.feed_error_percent {
         Some(error) => json!({ "mean": rounded(error.mean, 6), "max": rounded(error.max, 6) }),
         None => json!({ "mean": null, "max": null }),
@@ -55,14 +59,108 @@ pub fn json(report: &Report, run: &Run) -> String {
     map.insert("max_accel".into(), axes(report.max_accel));
     map.insert("feed_error_percent".into(), feed);
     map.insert("lost_pulses".into(), json!({ "x": run.lost_pulses.x, "z": run.lost_pulses.z }));
+    work(&mut map, worked);
     map.insert("warnings".into(), run.warnings.clone().into());
     let mut text = serde_json::to_string_pretty(&Value::Object(map)).unwrap_or_default();
     text.push('\n');
     text
 }
 
+/// What was cut, and how.
+fn work(map: &mut Map<String, Value>, worked: &Worked) {
+    let outcome = worked.outcome.as_ref();
+    let collisions: Vec<Value> = outcome
+        .iter()
+        .flat_map(|outcome| &outcome.collisions)
+        .map(|found| {
+            json!({
+                "what": found.touched.word(),
+                "time_s": rounded(nanoseconds(found.time_ns), 6),
+                "line": found.line,
+                "x_mm": rounded(found.place.x, 4),
+                "z_mm": rounded(found.place.z, 4),
+                "depth_mm": rounded(found.depth, 4),
+            })
+        })
+        .collect();
+    map.insert("collisions".into(), collisions.into());
+    let surface = outcome.and_then(|outcome| outcome.surface);
+    let figure = |value: Option<f64>| value.map(|value| rounded(value, 4));
+    map.insert(
+        "surface_error_um".into(),
+        json!({ "mean": figure(surface.map(|s| s.mean_um)), "max": figure(surface.map(|s| s.max_um)) }),
+    );
+    let Times { cut_ms, rapid_ms, idle_ms } = worked.times;
+    map.insert(
+        "cycle".into(),
+        json!({ "cut_s": seconds(cut_ms), "rapid_s": seconds(rapid_ms), "idle_s": seconds(idle_ms) }),
+    );
+    map.insert("volume_mm3".into(), json!(figure(outcome.map(|outcome| outcome.removed_mm3))));
+    map.insert("volume_left_mm3".into(), json!(figure(outcome.map(|outcome| outcome.left_mm3))));
+    map.insert("air_cut_percent".into(), json!(figure(air_percent(worked))));
+}
+
+#[expect(clippy::cast_precision_loss, reason = "times of a cycle")]
+fn seconds(ms: u64) -> f64 {
+    ms as f64 / 1e3
+}
+
+#[expect(clippy::cast_precision_loss, reason = "times of a cycle")]
+fn nanoseconds(ns: u64) -> f64 {
+    ns as f64 / 1e9
+}
+
+/// Part of the time in feeds in which nothing was cut.
+fn air_percent(worked: &Worked) -> Option<f64> {
+    let outcome = worked.outcome.as_ref()?;
+    let feeds = seconds(worked.times.cut_ms);
+    (feeds > 0.0).then(|| (100.0 * (1.0 - nanoseconds(outcome.cutting_ns) / feeds)).clamp(0.0, 100.0))
+}
+
+/// Lines about the stock, for a person.
+fn cut_summary(text: &mut String, worked: &Worked) {
+    let Times { cut_ms, rapid_ms, idle_ms } = worked.times;
+    let _ = write!(
+        text,
+        "  cycle       {} in feeds, {} in rapids, {} standing",
+        clock(seconds(cut_ms)),
+        clock(seconds(rapid_ms)),
+        clock(seconds(idle_ms))
+    );
+    if let Some(air) = air_percent(worked) {
+        let _ = write!(text, "; {air:.1} % of the feeds cut air");
+    }
+    text.push('\n');
+    let Some(outcome) = &worked.outcome else { return };
+    let _ = write!(text, "  stock       {:.1} mm3 cut off, {:.1} left", outcome.removed_mm3, outcome.left_mm3);
+    if let Some(surface) = outcome.surface {
+        let _ = write!(
+            text,
+            "; surface off the contour by {:.2} um mean, {:.2} um at most",
+            surface.mean_um, surface.max_um
+        );
+    }
+    text.push('\n');
+    for found in outcome.collisions.iter().take(COLLISIONS_TOLD) {
+        let _ = writeln!(
+            text,
+            "  collision   line {}: {} after {}, Z{:.3} radius {:.3}, {:.3} mm deep",
+            found.line,
+            found.touched,
+            clock(nanoseconds(found.time_ns)),
+            found.place.z,
+            found.place.x,
+            found.depth
+        );
+    }
+    let told = u64::try_from(COLLISIONS_TOLD).unwrap_or(0);
+    if outcome.collisions_total > told {
+        let _ = writeln!(text, "  collision   {} more", outcome.collisions_total - told);
+    }
+}
+
 /// The report for a person.
-pub fn summary(name: &str, report: &Report, run: &Run) -> String {
+pub fn summary(name: &str, report: &Report, worked: &Worked, run: &Run) -> String {
     let mut text = String::new();
     let wall = run.wall.as_secs_f64().max(1e-9);
     // writing to a string cannot fail
@@ -102,6 +200,7 @@ pub fn summary(name: &str, report: &Report, run: &Run) -> String {
         }
         None => text.push_str("  feed error  no motion is long enough to tell\n"),
     }
+    cut_summary(&mut text, worked);
     let percent = |load: f64| if load > 1.0 { "over 100 %".into() } else { format!("{:.0} %", load * 100.0) };
     let (load, lost) = (run.motor_load, run.lost_pulses);
     let _ = writeln!(

@@ -11,7 +11,7 @@ use machine::{Axes, Control, table};
 use crate::machine_file;
 
 /// The tables of the desktop's models, in the order of the list.
-pub const TABLES: &[&[figures::Definition]] = &[&table::CROSS_SLIDE, &table::CARRIAGE, &table::OTHERS];
+pub const TABLES: &[&[figures::Definition]] = &[&table::CROSS_SLIDE, &table::CARRIAGE, &table::OTHERS, &stock::FIGURES];
 
 /// Everything that `--set` and a machine file set.
 #[derive(Clone, Debug)]

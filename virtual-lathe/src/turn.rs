@@ -2,24 +2,26 @@
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use feature_editor::codes::Format;
+use feature_editor::codes::{Format, Item};
 use handcnc::background::parameters::Parameters;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use interp_core::config::Machine;
-use measure::Report;
+use stock::{ContourError, Part, SetupError, Tool};
 
+use crate::examples::{EXAMPLES, Example};
 use crate::insets::Chooser;
-use crate::lathe;
 use crate::motors::Motors;
 use crate::output::{Pending, Places};
-use crate::picture::{self, Drawing, Inset, Thinner};
+use crate::picture::Form;
 use crate::program::Program;
 use crate::report::{self, Run};
 use crate::settings::{Refusal, Settings};
+use crate::sheets::Sheets;
 use crate::watch::{Watch, Watched};
-use crate::{DEMO, messages};
+use crate::work::Curves;
+use crate::{lathe, messages};
 
 /// Exit code: done.
 pub const DONE: u8 = 0;
@@ -28,8 +30,6 @@ pub const REFUSED: u8 = 1;
 /// Exit code: a file can't be read or written.
 pub const UNUSABLE: u8 = 2;
 
-/// Width of pictures, pixels.
-const WIDTH: u32 = 1600;
 /// Warnings of one kind that a report lists.
 const WARNINGS_LISTED: usize = 100;
 
@@ -50,10 +50,24 @@ pub struct Job {
     pub report: Option<PathBuf>,
     /// Where the picture goes.
     pub picture: Option<PathBuf>,
+    /// Where the picture of the surface error goes.
+    pub error_picture: Option<PathBuf>,
+    /// Where the picture of the motion over time goes.
+    pub motion_picture: Option<PathBuf>,
+    /// Where the animation goes.
+    pub animate: Option<PathBuf>,
+}
+
+impl Job {
+    /// The outputs asked for, other than trace and report.
+    fn pictures(&self) -> impl Iterator<Item = &PathBuf> {
+        self.picture.iter().chain(&self.error_picture).chain(&self.motion_picture).chain(&self.animate)
+    }
 }
 
 /// Why a job ended early.
-enum Failure {
+#[derive(Debug)]
+pub enum Failure {
     /// Said already.
     Refused,
     /// A file can't be read or written.
@@ -77,7 +91,7 @@ pub fn turn(job: &Job) -> u8 {
 }
 
 /// Tells why a job ended early; the exit code.
-fn told(failure: Failure) -> u8 {
+pub fn told(failure: Failure) -> u8 {
     match failure {
         Failure::Refused => REFUSED,
         Failure::Unusable(message) => {
@@ -99,50 +113,145 @@ fn told(failure: Failure) -> u8 {
 /// The exit code; all errors are told.
 pub fn settings(machine: Option<&Path>, set: &[(String, String)]) -> Result<(Settings, Machine), u8> {
     let job = Job { machine: machine.map(Into::into), set: set.to_vec(), ..Job::default() };
-    parameters(&job).map_err(told)
+    parameters(&job, None).map_err(told)
+}
+
+/// A program that has run.
+pub struct Finished {
+    /// The program's name.
+    pub name: String,
+    /// What the watch saw.
+    pub watched: Watched,
+    /// Figures for the report.
+    pub run: Run,
+    /// The tool that cut.
+    pub tool: Option<Tool>,
+    /// Size of a pulse, Z and X, in mm.
+    pub pulse: [f64; 2],
 }
 
 fn run(job: &Job) -> Result<(), Failure> {
-    let (settings, machine) = parameters(job)?;
-    let parameters = &settings.parameters;
-    let program = match &job.file {
-        None => Program::Text { name: "handle.nc".into(), text: DEMO.to_vec() },
-        Some(path) => Program::open(path).map_err(|error| Failure::Unusable(format!("{}: {error}", path.display())))?,
+    let example = EXAMPLES.first().filter(|_| job.file.is_none());
+    // the demo comes with its bar, unless a machine file says what there is
+    let (settings, machine) = parameters(job, example.filter(|_| job.machine.is_none()))?;
+    let program = match (&job.file, example) {
+        (Some(path), _) => {
+            Program::open(path).map_err(|error| Failure::Unusable(format!("{}: {error}", path.display())))?
+        }
+        (None, Some(example)) => example.program(),
+        (None, None) => return Err(Failure::Unusable("there is no program".into())),
     };
     let pictures = pictures(job, &program);
     let mut places = Places::default();
     for input in job.file.iter().chain(&job.machine) {
         places.input(input);
     }
-    for output in job.trace.iter().chain(&job.report).chain(&pictures) {
+    let others = [&job.error_picture, &job.motion_picture, &job.animate].into_iter().flatten();
+    for output in job.trace.iter().chain(&job.report).chain(&pictures).chain(others) {
         places.output(output)?;
     }
+    let finished = perform(&program, job, &settings, &machine)?;
+    conclude(job, &pictures, finished)
+}
+
+/// Runs one of the examples with its own bar and tool.
+///
+/// # Errors
+/// [`Failure`].
+pub fn run_example(example: &'static Example) -> Result<Finished, Failure> {
+    let job = Job { animate: Some(PathBuf::new()), ..Job::default() };
+    let (settings, machine) = parameters(&job, Some(example))?;
+    perform(&example.program(), &job, &settings, &machine)
+}
+
+/// Checks a program, runs it and measures.
+fn perform(program: &Program, job: &Job, settings: &Settings, machine: &Machine) -> Result<Finished, Failure> {
+    let parameters = &settings.parameters;
     let name = program.name();
     let format = match job.format {
         Some(format) => format,
         None => program.detect()?,
     };
     let bar = progress(program.size());
-    let (warnings, chooser) = check(&program, format, parameters, &machine, &bar)?;
+    let (mut warnings, chooser, curves) = check(program, format, parameters, machine, &bar)?;
+    let clamped = match curves.clamp(&settings.figures) {
+        Ok(clamped) => clamped,
+        Err(error) => {
+            bar.finish_and_clear();
+            return Err(unclamped(&name, error));
+        }
+    };
+    if curves.is_too_long() {
+        warnings.push("the program is too long to compare its surface with the contour".into());
+    }
+    let leaves = clamped.as_ref().and_then(|clamped| clamped.leaves(&settings.figures));
+    if let Some((line, place)) = leaves {
+        let (z, x) = (place.z, place.x);
+        warnings.push(format!("line {line}: the part ends outside the stock, near Z{z:.3}, radius {x:.3} mm"));
+    }
+    let tool = clamped.as_ref().map(|clamped| clamped.tool);
     let trace = match &job.trace {
         Some(path) => Some(Pending::create(path)?),
         None => None,
     };
     bar.set_message("turning");
     bar.set_position(0);
-    let model = settings.model(&machine).map_err(|error| Failure::Unusable(error.to_string()))?;
-    let mut watch = Watch::new(parameters, &machine, chooser, trace, bar)?;
-    let mut motors = Motors::new(model);
+    let model = settings.model(machine).map_err(|error| Failure::Unusable(error.to_string()))?;
+    let set_up = (Motors::new(model), clamped, job.animate.is_some());
+    let mut watch = Watch::new(parameters, machine, chooser, trace, set_up, bar)?;
     let began = Instant::now();
-    lathe::run(&program, format, parameters, &machine, &[], &mut (&mut watch, &mut motors))?;
+    lathe::run(program, format, parameters, machine, &[], &mut watch)?;
     let wall = began.elapsed();
     watch.bar().finish_and_clear();
-    conclude(job, &pictures, &name, watch, &motors, warnings, wall)
+    if let Some((count, line)) = watch.stops() {
+        warnings.push(format!("line {line}: programmed stop passed by, as there is no operator ({count} in all)"));
+    }
+    let pulse = watch.pulse();
+    let watched = watch.finish();
+    let faults = &watched.report.faults;
+    if faults.total() > 0 {
+        let list: Vec<String> = faults.first().iter().map(ToString::to_string).collect();
+        return Err(Failure::Fault(format!("{name}: {} broken rules\n   {}", faults.total(), list.join("\n   "))));
+    }
+    let motors = &watched.motors;
+    warnings.extend(motors.warnings());
+    let (lost_pulses, motor_load) = (motors.lost_pulses(), motors.peaks());
+    let run = Run { blocks: watched.blocks, wall, lost_pulses, motor_load, warnings };
+    Ok(Finished { name, watched, run, tool, pulse })
+}
+
+/// Tells why nothing was clamped.
+fn unclamped(name: &str, error: SetupError) -> Failure {
+    match error {
+        SetupError::Figures(error) => eprintln!("error: {error}"),
+        SetupError::Program(errors) => {
+            for error in errors {
+                eprintln!("error: {name}: {error}\n   = {}", remedy(&error));
+            }
+        }
+    }
+    eprintln!("   = `parameters` lists all names, units and ranges; nothing was run");
+    Failure::Refused
+}
+
+fn remedy(error: &ContourError) -> &'static str {
+    match error {
+        ContourError::TooThin { .. } => "make stock.diameter_mm larger, or correct the program",
+        ContourError::TooShort { .. } => "make stock.length_mm larger, move stock.face_mm, or correct the program",
+        ContourError::TooHollow { .. } => "make stock.bore_mm smaller, or correct the program",
+        ContourError::Unreachable { part: Part::Front, .. } => {
+            "take a tool with a greater tool.front_deg, or make the slope flatter"
+        }
+        ContourError::Unreachable { .. } => "take a tool with a greater tool.back_deg, or make the slope flatter",
+    }
 }
 
 /// Reads machine file and settings; all errors are told.
-fn parameters(job: &Job) -> Result<(Settings, Machine), Failure> {
-    Settings::read(job.machine.as_deref(), &job.set).map_err(|refusal| match refusal {
+fn parameters(job: &Job, example: Option<&Example>) -> Result<(Settings, Machine), Failure> {
+    let own =
+        example.into_iter().flat_map(|example| example.set).map(|(name, value)| ((*name).into(), (*value).into()));
+    let set: Vec<(String, String)> = own.chain(job.set.iter().cloned()).collect();
+    Settings::read(job.machine.as_deref(), &set).map_err(|refusal| match refusal {
         Refusal::Unreadable(message) => Failure::Unusable(message),
         Refusal::Wrong(errors) => {
             for error in &errors {
@@ -161,10 +270,15 @@ fn check(
     parameters: &Parameters,
     machine: &Machine,
     bar: &ProgressBar,
-) -> Result<(Vec<String>, Chooser), Failure> {
+) -> Result<(Vec<String>, Chooser, Curves), Failure> {
     bar.set_message("checking");
     let mut chooser = Chooser::new(parameters.start());
-    let checked = lathe::check(program, format, parameters, machine, &mut |item| chooser.action(item), &mut |bytes| {
+    let mut curves = Curves::new(parameters.start());
+    let mut action = |item: &Item| {
+        chooser.action(item);
+        curves.action(item);
+    };
+    let checked = lathe::check(program, format, parameters, machine, &mut action, &mut |bytes| {
         bar.set_position(bytes);
     })?;
     let name = program.name();
@@ -192,45 +306,38 @@ fn check(
     if parameters.corner_nm() > 0 {
         warnings.push("corner_um: corners are not blended; the path stays exact".into());
     }
-    Ok((warnings, chooser))
+    Ok((warnings, chooser, curves))
 }
 
 /// Writes what was asked for, once the figures are in.
-fn conclude(
-    job: &Job,
-    pictures: &[PathBuf],
-    name: &str,
-    watch: Watch,
-    motors: &Motors,
-    mut warnings: Vec<String>,
-    wall: Duration,
-) -> Result<(), Failure> {
-    if let Some((count, line)) = watch.stops() {
-        warnings.push(format!("line {line}: programmed stop passed by, as there is no operator ({count} in all)"));
-    }
-    let Watched { report, thinner, insets, trace, blocks } = watch.finish();
-    if report.faults.total() > 0 {
-        let list: Vec<String> = report.faults.first().iter().map(ToString::to_string).collect();
-        return Err(Failure::Fault(format!(
-            "{name}: {} broken rules\n   {}",
-            report.faults.total(),
-            list.join("\n   ")
-        )));
-    }
-    warnings.extend(motors.warnings());
-    let run = Run { blocks, wall, lost_pulses: motors.lost_pulses(), motor_load: motors.peaks(), warnings };
+fn conclude(job: &Job, pictures: &[PathBuf], mut finished: Finished) -> Result<(), Failure> {
     let mut files = Vec::new();
-    files.extend(trace);
+    files.extend(finished.watched.trace.take());
+    let (report, worked) = (&finished.watched.report, &finished.watched.worked);
     if let Some(path) = &job.report {
         let mut file = Pending::create(path)?;
-        file.writer().write_all(report::json(&report, &run).as_bytes())?;
+        file.writer().write_all(report::json(report, worked, &finished.run).as_bytes())?;
         files.push(file);
     }
-    if !pictures.is_empty() {
-        files.extend(draw(pictures, name, &report, &thinner, insets)?);
+    let sheets = Sheets::new(&finished);
+    for path in pictures {
+        files.push(sheets.write(path, &sheets.part())?);
     }
-    let mut told = report::summary(name, &report, &run);
-    for warning in &run.warnings {
+    if let Some(path) = &job.error_picture {
+        files.push(sheets.write(path, &sheets.error())?);
+    }
+    if let Some(path) = &job.motion_picture {
+        files.push(sheets.write(path, &sheets.motion())?);
+    }
+    if let Some(path) = &job.animate {
+        let mut file = Pending::create(path)?;
+        let is_gif = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gif"));
+        let form = if is_gif { Form::Gif } else { Form::Png };
+        file.writer().write_all(&sheets.animation(form, &progress(0))?)?;
+        files.push(file);
+    }
+    let mut told = report::summary(&finished.name, report, worked, &finished.run);
+    for warning in &finished.run.warnings {
         told.push_str(&format!("  warning     {warning}\n"));
     }
     for file in files {
@@ -243,58 +350,18 @@ fn conclude(
 
 /// The pictures to draw: the one asked for, or both kinds where no output was asked for.
 fn pictures(job: &Job, program: &Program) -> Vec<PathBuf> {
-    match (&job.picture, &job.trace, &job.report) {
-        (Some(path), _, _) => vec![path.clone()],
-        (None, None, None) => {
-            let stem = program.stem();
-            vec![Path::new("out").join(format!("{stem}.svg")), Path::new("out").join(format!("{stem}.png"))]
-        }
-        _ => Vec::new(),
+    if let Some(path) = &job.picture {
+        return vec![path.clone()];
     }
-}
-
-fn draw(
-    paths: &[PathBuf],
-    name: &str,
-    report: &Report,
-    thinner: &Thinner,
-    insets: Vec<Inset>,
-) -> Result<Vec<Pending>, Failure> {
-    let tracks = thinner.tracks();
-    let start = tracks.first().and_then(|track| track.points.first()).copied().unwrap_or_default();
-    let end = tracks.last().and_then(|track| track.points.last()).copied().unwrap_or(start);
-    let drawing = Drawing {
-        title: name.to_owned(),
-        subtitle: format!(
-            "{}, {} pulses of X, {} of Z; at most {:.3} pulses off the curve; train {:016x}",
-            report::clock(report.time_s),
-            report.pulses.x,
-            report.pulses.z,
-            report.walked.pulses,
-            report.train_hash
-        ),
-        tracks,
-        start,
-        end,
-        insets,
-    };
-    let svg = drawing.svg(WIDTH);
-    let mut files = Vec::new();
-    for path in paths {
-        let mut file = Pending::create(path)?;
-        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
-            let image = picture::png(&svg, WIDTH).map_err(|error| Failure::Unusable(error.to_string()))?;
-            file.writer().write_all(&image)?;
-        } else {
-            file.writer().write_all(svg.as_bytes())?;
-        }
-        files.push(file);
+    if job.trace.is_some() || job.report.is_some() || job.pictures().next().is_some() {
+        return Vec::new();
     }
-    Ok(files)
+    let stem = program.stem();
+    vec![Path::new("out").join(format!("{stem}.svg")), Path::new("out").join(format!("{stem}.png"))]
 }
 
 /// A bar that shows from the first second on, on terminals.
-fn progress(size: u64) -> ProgressBar {
+pub(crate) fn progress(size: u64) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(size), ProgressDrawTarget::stderr_with_hz(10));
     let style = ProgressStyle::with_template("{msg:>9} {bar:30} {percent:>3} %  {elapsed} of {duration}");
     if let Ok(style) = style {

@@ -11,11 +11,14 @@ use interp_core::channel::{self, State};
 use interp_core::config::{AxisConfig, Config, Machine};
 use interp_core::units::{Axis, Point, Sense};
 use measure::{Checker, Limits, Motion, PerAxis, PulseEquivalent, Report, Setup, Shape};
+use stock::Clamped;
 
 use crate::insets::{self, Chooser};
 use crate::lathe::Observer;
+use crate::motors::Motors;
 use crate::output::Pending;
 use crate::picture::{Inset, Kind, Thinner};
+use crate::work::{Work, Worked};
 
 /// Points of the path that a picture keeps.
 const PATH_POINTS: usize = 20_000;
@@ -33,6 +36,9 @@ pub struct Watch {
     pulse: [f64; 2],
     insets: Vec<Inset>,
     trace: Option<Pending>,
+    motors: Motors,
+    work: Work,
+    lattice: [i32; 2],
     blocks: u64,
     stops: u64,
     last_stop: u32,
@@ -55,10 +61,15 @@ pub struct Watched {
     pub trace: Option<Pending>,
     /// Program blocks that move.
     pub blocks: u64,
+    /// The stock, and the times of the cycle.
+    pub worked: Worked,
+    /// The machine as the run left it.
+    pub motors: Motors,
 }
 
 impl Watch {
-    /// Watches from the start; `chooser` has seen the program.
+    /// Watches from the start; `chooser` has seen the program, the motors follow the train, and `clamped` is cut by
+    /// where they bring the tool. Moments of an `animated` run are kept.
     ///
     /// # Errors
     /// Those of writing the trace, and a set-up that the checker refuses.
@@ -67,10 +78,12 @@ impl Watch {
         machine: &Machine,
         chooser: Chooser,
         trace: Option<Pending>,
+        (motors, clamped, animated): (Motors, Option<Clamped>, bool),
         bar: ProgressBar,
     ) -> io::Result<Self> {
         let pulse = [pulse_mm(machine, Axis::Z), pulse_mm(machine, Axis::X)];
         let start = parameters.start();
+        let (x, z) = (machine.x.pulse.nearest(start.x), machine.z.pulse.nearest(start.z));
         let mut checker = Checker::new(setup(parameters, machine)).map_err(io::Error::other)?;
         checker.override_percent(u32::from(parameters.feed_override()));
         let mut watch = Self {
@@ -82,6 +95,9 @@ impl Watch {
             pulse,
             insets: chooser.insets(pulse),
             trace,
+            motors,
+            work: Work::new(clamped, pulse, [z, x], animated),
+            lattice: [z, x],
             blocks: 0,
             stops: 0,
             last_stop: 0,
@@ -89,7 +105,6 @@ impl Watch {
             held: false,
             bar,
         };
-        let (x, z) = (machine.x.pulse.nearest(start.x), machine.z.pulse.nearest(start.z));
         watch.thinner.push(Kind::Rapid, [f64::from(z) * pulse[0], f64::from(x) * pulse[1]]);
         insets::visit(&mut watch.insets, z, x);
         if let Some(trace) = &mut watch.trace {
@@ -103,6 +118,11 @@ impl Watch {
         (self.stops > 0).then_some((self.stops, self.last_stop))
     }
 
+    /// Size of a pulse, Z and X, in mm.
+    pub fn pulse(&self) -> [f64; 2] {
+        self.pulse
+    }
+
     /// The progress bar.
     pub fn bar(&self) -> &ProgressBar {
         &self.bar
@@ -110,8 +130,8 @@ impl Watch {
 
     /// Ends the measurement.
     pub fn finish(self) -> Watched {
-        let Self { checker, thinner, insets, trace, blocks, .. } = self;
-        Watched { report: checker.finish(), thinner, insets, trace, blocks }
+        let Self { checker, thinner, insets, trace, motors, work, blocks, .. } = self;
+        Watched { report: checker.finish(), thinner, insets, trace, blocks, worked: work.finish(), motors }
     }
 }
 
@@ -151,14 +171,19 @@ impl Observer for Watch {
         let (kind, pulse) = (self.kind, self.pulse);
         let (thinner, insets) = (&mut self.thinner, &mut self.insets);
         let mut written = Ok(());
-        let trace = &mut self.trace;
+        let (trace, lattice) = (&mut self.trace, &mut self.lattice);
         self.checker.tick_traced(events, &mut |clocks, x, z| {
             thinner.push(kind, [f64::from(z) * pulse[0], f64::from(x) * pulse[1]]);
             insets::visit(insets, z, x);
+            *lattice = [z, x];
             if let (Some(trace), Ok(())) = (trace.as_mut(), &written) {
                 written = writeln!(trace.writer(), "{},{x},{z}", measure::time_ns(clocks));
             }
         });
+        let work = &mut self.work;
+        // what is cut is where the slides really are
+        self.motors.play(events, report.line, &mut |place| work.step(place, kind, report.line));
+        work.tick(*lattice, kind, report.speed == 0);
         let held = matches!(report.state, State::Holding) && report.speed == 0;
         if held && !self.held {
             self.checker.rest();

@@ -92,13 +92,13 @@ fn the_demo_over_tcp_is_the_demo_turned() {
     let mut sender = lathe.connect().greeted();
     let answers = sender.stream(virtual_lathe::DEMO);
     assert!(answers.iter().all(|answer| answer == "ok"), "{answers:?}");
-    assert!(lathe.told().ends_with(" s, 69600 pulses of X, 85600 of Z, train 4c4d185bbb795894"));
+    assert!(lathe.told().ends_with(" s, 168618 pulses of X, 403304 of Z, train 37387de01abbc410"));
     // and again, on the same line; the closing % of the first was answered, too
     sender.send("G0 X0 Z0\nM30\n");
     assert_eq!((sender.line(), sender.line()), ("ok".into(), "ok".into()));
     assert!(lathe.told().starts_with("cycle 2: "));
     sender.stream(virtual_lathe::DEMO);
-    assert!(lathe.told().ends_with("train 4c4d185bbb795894"));
+    assert!(lathe.told().ends_with("train 37387de01abbc410"));
 }
 
 #[test]

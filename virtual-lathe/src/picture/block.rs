@@ -5,7 +5,7 @@ use crate::picture::layout::{LINE, TEXT};
 use crate::picture::main_view::{CENTRE_LINE, stroke};
 use crate::picture::pen::{Anchor, GREY, INK, Pen, Stroke};
 use crate::picture::view::{Rect, is_drawable};
-use crate::picture::{Drawing, Kind, Track, text};
+use crate::picture::{Drawing, Kind, Track, section, text};
 
 /// Size of the title.
 const TITLE: f64 = 19.0;
@@ -29,6 +29,9 @@ const COLUMN_GAP: f64 = 18.0;
 enum Entry {
     Path(Kind),
     CentreLine,
+    Section,
+    Bar,
+    Tool,
     Lattice,
     Visited,
     TrueCurve,
@@ -40,7 +43,11 @@ impl Entry {
             Self::Path(Kind::Rapid) => "rapid",
             Self::Path(Kind::Feed) => "straight feed",
             Self::Path(Kind::Arc) => "arc feed",
+            Self::Path(Kind::Thread) => "thread",
             Self::CentreLine => "centre line",
+            Self::Section => "part, in section",
+            Self::Bar => "bar before the cut",
+            Self::Tool => "tool",
             Self::Lattice => "pulse lattice",
             Self::Visited => "points visited",
             Self::TrueCurve => "true curve",
@@ -65,9 +72,13 @@ impl Block {
             tracks.any(|track| track.kind == *kind && is_drawn(track))
         };
         let mut entries: Vec<Entry> =
-            [Kind::Rapid, Kind::Feed, Kind::Arc].into_iter().filter(is_shown).map(Entry::Path).collect();
+            [Kind::Rapid, Kind::Feed, Kind::Arc, Kind::Thread].into_iter().filter(is_shown).map(Entry::Path).collect();
         if shows_centre_line {
             entries.push(Entry::CentreLine);
+        }
+        if let Some(section) = &drawing.section {
+            entries.extend([Entry::Section, Entry::Bar]);
+            entries.extend((!section.tool.is_empty()).then_some(Entry::Tool));
         }
         if !drawing.insets.is_empty() {
             entries.extend([Entry::Lattice, Entry::Visited, Entry::TrueCurve]);
@@ -164,6 +175,13 @@ fn sample(pen: &mut Pen, entry: Entry, [left, y]: [f64; 2]) {
         Entry::Path(kind) => line(pen, stroke(kind)),
         Entry::CentreLine => line(pen, CENTRE_LINE),
         Entry::TrueCurve => line(pen, TRUE_CURVE),
+        Entry::Bar => line(pen, section::BAR),
+        Entry::Section => section::sample(pen, [left, y - 6.0], [SAMPLE[0], 12.0]),
+        Entry::Tool => {
+            pen.open("sample", section::TOOL);
+            pen.shape(&[[left + 4.0, y - 6.0], [left + 16.0, y + 6.0], [left + 32.0, y - 6.0]], section::TOOL_FILL);
+            pen.close();
+        }
         Entry::Lattice => {
             pen.open("sample", LATTICE);
             for k in 0..4 {

@@ -123,6 +123,8 @@ struct Task {
     insets: usize,
     /// Room for the labels of the X axis.
     gutter: f64,
+    /// Room for dimensions under the work, inside the frame.
+    foot: f64,
 }
 
 impl Task {
@@ -143,12 +145,12 @@ impl Task {
     /// Scale at which the path fits into a frame.
     fn scale(&self, width: f64, height: f64) -> f64 {
         let pad = 2.0 * self.pad();
-        ((width - pad) / self.span[0]).min((height - pad) / self.span[1])
+        ((width - pad) / self.span[0]).min((height - pad - self.foot) / self.span[1])
     }
 
     /// Height of a frame around the path.
     fn height(&self, scale: f64) -> f64 {
-        (self.span[1] * scale + 2.0 * self.pad()).max(LEAST_HEIGHT)
+        (self.span[1] * scale + 2.0 * self.pad() + self.foot).max(LEAST_HEIGHT)
     }
 
     fn top() -> f64 {
@@ -230,13 +232,15 @@ fn ticks(main: &View) -> [Ticks; 2] {
 }
 
 impl Layout {
-    /// A sheet of the given width for a path within `bounds`; `block_height` is the height of the title block.
-    pub(crate) fn new(width: f64, bounds: &Bounds, insets: usize, block_height: f64) -> Self {
-        let mut task = Task { width, span: bounds.span(), insets, gutter: 0.0 };
+    /// A sheet of the given width for a path within `bounds`; `block_height` is the height of the title block, `foot`
+    /// that of what is written under the work.
+    pub(crate) fn new(width: f64, bounds: &Bounds, insets: usize, block_height: f64, foot: f64) -> Self {
+        let mut task = Task { width, span: bounds.span(), insets, gutter: 0.0, foot };
         // The labels need room, which changes the scale, which changes the labels: the room only grows.
         let (arrangement, main, ticks) = loop {
             let arrangement = task.arranged();
-            let main = View::centred(arrangement.main, bounds.middle(), arrangement.scale);
+            let mut main = View::centred(arrangement.main, bounds.middle(), arrangement.scale);
+            main.low[1] -= foot / 2.0 / arrangement.scale;
             let ticks = ticks(&main);
             let [_, along_x] = &ticks;
             let labels = along_x.labelled(main.low[1], main.high()[1]);
@@ -259,7 +263,7 @@ mod tests {
 
     fn layout(across: f64, up: f64, insets: usize) -> Layout {
         let bounds = Bounds::of([[0.0, 0.0], [across, up]].into_iter());
-        Layout::new(1_000.0, &bounds, insets, 90.0)
+        Layout::new(1_000.0, &bounds, insets, 90.0, 0.0)
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::picture::layout::Layout;
 use crate::picture::pen::{INK, Pen, Point, Stroke};
 use crate::picture::room::Room;
 use crate::picture::view::{View, is_drawable};
-use crate::picture::{Drawing, Kind, arrows, axes, balloon, thin};
+use crate::picture::{Drawing, Kind, arrows, axes, balloon, section, thin};
 
 /// Rotation axis of the work.
 pub(crate) const CENTRE_LINE: Stroke = Stroke { colour: "#555555", width: 0.9, dashes: "18 4 3 4" };
@@ -24,17 +24,19 @@ pub(crate) const fn stroke(kind: Kind) -> Stroke {
         Kind::Rapid => Stroke { colour: "#6b6b6b", width: 1.0, dashes: "6 4" },
         Kind::Feed => Stroke::solid(INK, 1.5),
         Kind::Arc => Stroke::solid("#1668b8", 3.0),
+        Kind::Thread => Stroke { colour: "#8a2f8a", width: 2.2, dashes: "9 3 2 3" },
     }
 }
 
 /// Kinds in the order they are drawn: cuts over rapids, thin lines over thick ones.
-const KINDS: [Kind; 3] = [Kind::Rapid, Kind::Arc, Kind::Feed];
+const KINDS: [Kind; 4] = [Kind::Rapid, Kind::Arc, Kind::Thread, Kind::Feed];
 
 const fn class(kind: Kind) -> &'static str {
     match kind {
         Kind::Rapid => "track rapid",
         Kind::Feed => "track feed",
         Kind::Arc => "track arc",
+        Kind::Thread => "track thread",
     }
 }
 
@@ -48,6 +50,9 @@ pub(crate) fn draw(pen: &mut Pen, drawing: &Drawing, layout: &Layout) {
     let view = &layout.main;
     let mut room = Room::new(view.rect);
     axes::grid(pen, layout);
+    if let Some(work) = &drawing.section {
+        section::draw(pen, &mut room, work, view);
+    }
     centre_line(pen, &mut room, view);
     let lines = lines(drawing, view);
     for kind in KINDS {

@@ -8,7 +8,9 @@ mod arrows;
 mod axes;
 mod balloon;
 mod block;
+mod chart;
 mod curve;
+mod film;
 mod inset;
 mod layout;
 mod main_view;
@@ -17,10 +19,13 @@ mod page;
 mod pen;
 mod raster;
 mod room;
+mod section;
 mod text;
 mod thin;
 mod view;
 
+pub use chart::{Chart, Look, Series, Strip};
+pub use film::{Film, Form};
 pub use raster::{PictureError, png};
 pub use thin::Thinner;
 
@@ -33,6 +38,8 @@ pub enum Kind {
     Feed,
     /// Circular feed; drawn heavy in a second colour.
     Arc,
+    /// Feed bound to the spindle; drawn in dots and dashes.
+    Thread,
 }
 
 /// A stretch of the path travelled in one way.
@@ -102,4 +109,32 @@ pub struct Drawing {
     pub end: [f64; 2],
     /// Places to magnify. The sheet is made for none to three.
     pub insets: Vec<Inset>,
+    /// The work, drawn in half section under the path.
+    pub section: Option<Section>,
+}
+
+/// The work as cut, the bar it was cut from, and the tool. All in mm, `[z, x]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Section {
+    /// Back and front end of the bar, along Z.
+    pub bar_z: [f64; 2],
+    /// Bore and outside of the bar, as radii.
+    pub bar_x: [f64; 2],
+    /// The outside of what is left, from the back to the front.
+    pub outside: Vec<[f64; 2]>,
+    /// Its bore, likewise.
+    pub inside: Vec<[f64; 2]>,
+    /// The tool's outline.
+    pub tool: Vec<[f64; 2]>,
+    /// What is written under the work, each with the place of the surface that it belongs to.
+    pub dimensions: Vec<Dimension>,
+}
+
+/// A size of the work.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dimension {
+    /// As written: a diameter, a radius, an angle, a position.
+    pub text: String,
+    /// Place of the surface.
+    pub place: [f64; 2],
 }

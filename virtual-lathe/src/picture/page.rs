@@ -4,7 +4,7 @@ use crate::picture::block::Block;
 use crate::picture::layout::{BORDER, Bounds, Layout};
 use crate::picture::pen::{INK, Pen, Stroke};
 use crate::picture::view::is_drawable;
-use crate::picture::{Drawing, inset, main_view};
+use crate::picture::{Drawing, inset, main_view, section};
 
 /// Width in pixels at which a unit is a pixel.
 const PLAIN_WIDTH: f64 = 1_000.0;
@@ -33,15 +33,17 @@ impl Drawing {
         let tracks = self.tracks.iter().flat_map(|track| &track.points);
         let places = self.insets.iter().map(|inset| &inset.centre);
         let points = tracks.chain(places).chain([&self.start, &self.end]);
-        let bounds = Bounds::of(points.copied());
+        let corners = self.section.iter().flat_map(section::corners);
+        let bounds = Bounds::of(points.copied().chain(corners));
+        let foot = self.section.as_ref().map_or(0.0, section::foot);
         let is_on_line = bounds.low[1] <= 0.0 && bounds.high[1] >= 0.0;
         let block_width = units - 2.0 * BORDER;
         let mut block = Block::new(self, is_on_line, block_width);
-        let mut layout = Layout::new(units, &bounds, self.insets.len(), block.height());
+        let mut layout = Layout::new(units, &bounds, self.insets.len(), block.height(), foot);
         if main_view::shows_centre_line(&layout.main) != is_on_line {
             // The margin around the path has brought it into sight.
             block = Block::new(self, !is_on_line, block_width);
-            layout = Layout::new(units, &bounds, self.insets.len(), block.height());
+            layout = Layout::new(units, &bounds, self.insets.len(), block.height(), foot);
         }
         let mut pen = Pen::sheet(layout.width, layout.height, width_px);
         main_view::draw(&mut pen, self, &layout);

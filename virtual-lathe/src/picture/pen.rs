@@ -154,6 +154,28 @@ impl Pen {
         self.put(format_args!("z\"/>\n"));
     }
 
+    /// Text that runs upward from `at`, which lies in the middle of its height.
+    pub(crate) fn upright(&mut self, class: &str, [x, y]: Point, size: f64, anchor: Anchor, content: &str) {
+        let baseline = x + 0.36 * size;
+        self.put(format_args!("<g transform=\"translate({baseline:.2} {y:.2}) rotate(-90)\">\n"));
+        self.text(class, [0.0, 0.0], size, anchor, INK, content);
+        self.out.push_str("</g>\n");
+    }
+
+    /// A closed shape with the stroke of the group, filled.
+    pub(crate) fn shape(&mut self, corners: &[Point], fill: &str) {
+        if corners.len() < 3 {
+            return;
+        }
+        self.put(format_args!("<path fill=\"{fill}\" d=\""));
+        let mut command = 'M';
+        for [x, y] in corners {
+            self.put(format_args!("{command}{x:.2} {y:.2}"));
+            command = 'L';
+        }
+        self.put(format_args!("z\"/>\n"));
+    }
+
     /// Text on a baseline at `at`; nothing if it is empty.
     pub(crate) fn text(&mut self, class: &str, at: Point, size: f64, anchor: Anchor, ink: &str, content: &str) {
         if content.is_empty() {

@@ -59,6 +59,29 @@ static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
 /// [`PictureError::NotSvg`] if `svg` cannot be parsed; [`PictureError::Size`] if a side would be 0 or more than
 /// 16 384 pixels.
 pub fn png(svg: &str, width_px: u32) -> Result<Vec<u8>, PictureError> {
+    let image = render(svg, width_px)?;
+    encode(&image).ok_or(PictureError::Encoding)
+}
+
+/// A picture in shades of grey.
+pub(crate) struct Grey {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    /// A byte a pixel, row by row; 255 is white.
+    pub(crate) pixels: Vec<u8>,
+}
+
+/// Renders an SVG document in shades of grey.
+pub(crate) fn grey(svg: &str, width_px: u32) -> Result<Grey, PictureError> {
+    let image = render(svg, width_px)?;
+    // luma of ITU-R BT.601, in 1/256
+    let luma = |r: u8, g: u8, b: u8| (u32::from(r) * 77 + u32::from(g) * 150 + u32::from(b) * 29) >> 8;
+    let shade = |value: u32| u8::try_from(value).unwrap_or(u8::MAX);
+    let pixels = image.pixels().iter().map(|pixel| shade(luma(pixel.red(), pixel.green(), pixel.blue()))).collect();
+    Ok(Grey { width: image.width(), height: image.height(), pixels })
+}
+
+fn render(svg: &str, width_px: u32) -> Result<Pixmap, PictureError> {
     let options =
         usvg::Options { font_family: text::FAMILY.into(), fontdb: Arc::clone(&FONTS), ..usvg::Options::default() };
     let tree = usvg::Tree::from_str(svg, &options).map_err(|_| PictureError::NotSvg)?;
@@ -72,7 +95,7 @@ pub fn png(svg: &str, width_px: u32) -> Result<Vec<u8>, PictureError> {
     image.fill(Color::WHITE);
     let scale = scaled.width() as f32 / tree.size().width();
     resvg::render(&tree, Transform::from_scale(scale, scale), &mut image.as_mut());
-    encode(&image).ok_or(PictureError::Encoding)
+    Ok(image)
 }
 
 /// The image is opaque, so the alpha channel can go.

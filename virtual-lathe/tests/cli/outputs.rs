@@ -218,6 +218,12 @@ fn the_report_has_the_keys_of_the_issue_in_order() {
             "max_accel",
             "feed_error_percent",
             "lost_pulses",
+            "collisions",
+            "surface_error_um",
+            "cycle",
+            "volume_mm3",
+            "volume_left_mm3",
+            "air_cut_percent",
             "warnings"
         ]
     );

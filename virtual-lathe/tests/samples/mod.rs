@@ -113,6 +113,7 @@ impl Walk {
             start: self.start,
             end: self.at,
             insets,
+            section: None,
         }
     }
 }
@@ -278,6 +279,7 @@ pub fn nothing() -> Drawing {
         start: [f64::NAN; 2],
         end: [f64::NAN; 2],
         insets: Vec::new(),
+        section: None,
     }
 }
 

@@ -9,7 +9,7 @@ fn the_demo_streamed_is_the_demo_turned() {
     assert_eq!(answers, std::vec!["ok"; DEMO.lines().count()]);
     bench.until_idle();
     assert_eq!(bench.train.hash, DEMO_HASH);
-    assert_eq!(bench.train.pulses, 69_600 + 85_600);
+    assert_eq!(bench.train.pulses, 168_618 + 403_304);
     assert_eq!(without_link(DEMO).hash, DEMO_HASH);
     assert_eq!(bench.counted, bench.snapshot.position);
 }
