@@ -197,8 +197,8 @@ fn perform(program: &Program, job: &Job, settings: &Settings, machine: &Machine)
     bar.set_message("turning");
     bar.set_position(0);
     let model = settings.model(machine).map_err(|error| Failure::Unusable(error.to_string()))?;
-    let set_up = (Motors::new(model), clamped, job.animate.is_some());
-    let mut watch = Watch::new(parameters, machine, chooser, trace, set_up, bar)?;
+    let watch = Watch::new(parameters, machine, chooser, trace, bar)?;
+    let mut watch = watch.with_work(Motors::new(model), clamped, job.animate.is_some());
     let began = Instant::now();
     lathe::run(program, format, parameters, machine, &[], &mut watch)?;
     let wall = began.elapsed();
@@ -213,9 +213,10 @@ fn perform(program: &Program, job: &Job, settings: &Settings, machine: &Machine)
         let list: Vec<String> = faults.first().iter().map(ToString::to_string).collect();
         return Err(Failure::Fault(format!("{name}: {} broken rules\n   {}", faults.total(), list.join("\n   "))));
     }
-    let motors = &watched.motors;
-    warnings.extend(motors.warnings());
-    let (lost_pulses, motor_load) = (motors.lost_pulses(), motors.peaks());
+    let motors = watched.motors.as_ref();
+    warnings.extend(motors.map(Motors::warnings).unwrap_or_default());
+    let lost_pulses = motors.map(Motors::lost_pulses).unwrap_or_default();
+    let motor_load = motors.map(Motors::peaks).unwrap_or_default();
     let run = Run { blocks: watched.blocks, wall, lost_pulses, motor_load, warnings };
     Ok(Finished { name, watched, run, tool, pulse })
 }

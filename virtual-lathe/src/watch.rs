@@ -36,7 +36,7 @@ pub struct Watch {
     pulse: [f64; 2],
     insets: Vec<Inset>,
     trace: Option<Pending>,
-    motors: Motors,
+    motors: Option<Motors>,
     work: Work,
     lattice: [i32; 2],
     blocks: u64,
@@ -63,13 +63,12 @@ pub struct Watched {
     pub blocks: u64,
     /// The stock, and the times of the cycle.
     pub worked: Worked,
-    /// The machine as the run left it.
-    pub motors: Motors,
+    /// The machine as the run left it, if one followed.
+    pub motors: Option<Motors>,
 }
 
 impl Watch {
-    /// Watches from the start; `chooser` has seen the program, the motors follow the train, and `clamped` is cut by
-    /// where they bring the tool. Moments of an `animated` run are kept.
+    /// Watches from the start; `chooser` has seen the program.
     ///
     /// # Errors
     /// Those of writing the trace, and a set-up that the checker refuses.
@@ -78,7 +77,6 @@ impl Watch {
         machine: &Machine,
         chooser: Chooser,
         trace: Option<Pending>,
-        (motors, clamped, animated): (Motors, Option<Clamped>, bool),
         bar: ProgressBar,
     ) -> io::Result<Self> {
         let pulse = [pulse_mm(machine, Axis::Z), pulse_mm(machine, Axis::X)];
@@ -95,8 +93,8 @@ impl Watch {
             pulse,
             insets: chooser.insets(pulse),
             trace,
-            motors,
-            work: Work::new(clamped, pulse, [z, x], animated),
+            motors: None,
+            work: Work::new(None, pulse, [z, x], false),
             lattice: [z, x],
             blocks: 0,
             stops: 0,
@@ -111,6 +109,15 @@ impl Watch {
             writeln!(trace.writer(), "time_ns,x,z\n0,{x},{z}")?;
         }
         Ok(watch)
+    }
+
+    /// Lets motors follow the train, and `clamped` be cut by where they bring the tool. Moments of an `animated` run are
+    /// kept.
+    #[must_use]
+    pub fn with_work(mut self, motors: Motors, clamped: Option<Clamped>, animated: bool) -> Self {
+        self.motors = Some(motors);
+        self.work = Work::new(clamped, self.pulse, self.lattice, animated);
+        self
     }
 
     /// How many programmed stops were passed by, and the line of the last.
@@ -182,7 +189,9 @@ impl Observer for Watch {
         });
         let work = &mut self.work;
         // what is cut is where the slides really are
-        self.motors.play(events, report.line, &mut |place| work.step(place, kind, report.line));
+        if let Some(motors) = &mut self.motors {
+            motors.play(events, report.line, &mut |place| work.step(place, kind, report.line));
+        }
         work.tick(*lattice, kind, report.speed == 0);
         let held = matches!(report.state, State::Holding) && report.speed == 0;
         if held && !self.held {
