@@ -100,14 +100,16 @@ impl Writer<'_> {
         room
     }
 
-    /// Ends the tick and hands it over.
+    /// Ends the tick and hands it over. A tick all of whose events were lost is not one: the player idles instead.
     #[inline]
     pub fn publish(&mut self) {
-        self.queue.set(self.next, EMPTY);
-        compiler_fence(Ordering::Release);
-        self.queue.set(self.header, HEADER);
-        self.header = self.next;
-        self.next = self.next.wrapping_add(1);
+        if self.next != self.header.wrapping_add(1) {
+            self.queue.set(self.next, EMPTY);
+            compiler_fence(Ordering::Release);
+            self.queue.set(self.header, HEADER);
+            self.header = self.next;
+            self.next = self.next.wrapping_add(1);
+        }
         self.look();
     }
 
@@ -274,6 +276,36 @@ mod tests {
             assert_eq!(played(&mut player), (1020 & 0xAAAA, TICK_CLOCKS, true));
         }
         assert_eq!((writer.overruns(), writer.underruns()), (9, 3));
+    }
+
+    /// A tick that finds the queue full behind a long one is lost as a whole; the player goes on behind it.
+    #[test]
+    fn a_tick_without_any_place_is_no_tick() {
+        for length in 1_019..=1_021_u16 {
+            let mut queue = TrainQueue::new();
+            let (mut writer, mut player) = queue.split();
+            let mut write = |writer: &mut Writer<'_>, length: u16, first: u16| {
+                (0..length).for_each(|n| writer.put(event(first + n, 5)));
+                writer.publish();
+            };
+            write(&mut writer, length, 0);
+            assert_eq!(played(&mut player), (0, 5, true));
+            // as the interpolator does while the first tick is played
+            write(&mut writer, 3, 5_000);
+            for n in 1..length {
+                assert_eq!(played(&mut player), (n, 5, false));
+            }
+            let kept = 1_021_u16.saturating_sub(length + 1).min(3);
+            for n in 0..kept {
+                assert_eq!(played(&mut player), (5_000 + n, 5, n == 0), "length {length}");
+            }
+            let last = if kept > 0 { 4_999 + kept } else { length - 1 };
+            assert_eq!(played(&mut player), (last & 0xAAAA, TICK_CLOCKS, true), "length {length}");
+            write(&mut writer, 2, 7_000);
+            let next = [(); 3].map(|()| played(&mut player));
+            assert_eq!(next, [(7_000, 5, true), (7_001, 5, false), (7_001 & 0xAAAA, TICK_CLOCKS, true)]);
+            assert_eq!(writer.overruns(), u32::from(3 - kept));
+        }
     }
 
     /// Pairs come out as single events would, over the queue's end and where there is no place for all.
