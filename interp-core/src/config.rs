@@ -119,16 +119,21 @@ impl AxisConfig {
     /// Range of `max_jump`, um/s.
     pub const JUMP_RANGE: (u32, u32) = (10, 100_000);
 
-    fn check(&self, axis: Axis, event_min: u32) -> Result<AxisLimits, ConfigError> {
+    fn check(&self, axis: Axis, event_min: u32, other_width_ns: u32) -> Result<AxisLimits, ConfigError> {
         let accel_fits = self.max_accel >= Self::ACCEL_RANGE.0 && self.max_accel <= Self::ACCEL_RANGE.1;
         let jump_fits = self.max_jump >= Self::JUMP_RANGE.0 && self.max_jump <= Self::JUMP_RANGE.1;
         if !accel_fits || !jump_fits {
             return Err(ConfigError::Range { axis });
         }
         let (width, space) = (clocks(self.pulse_width_ns).max(1), clocks(self.min_space_ns).max(1));
+        // no level of a pin is shorter than an event, and falls of both axes that are closer wait for each other
+        let (high, low) = (width.max(event_min), space.max(event_min));
+        let apart = clocks(other_width_ns).max(event_min).abs_diff(high);
+        let waits_for_fall = if apart > 0 && apart < event_min { event_min } else { 0 };
+        let pulse = high.saturating_add(waits_for_fall).saturating_add(low);
         // edges that wait for a tick's border or for another event catch up in what is left: four waits a tick
         let waits = event_min.saturating_mul(4).saturating_mul(TICKS_PER_SECOND);
-        let limit_hz = CLOCKS_PER_SECOND.saturating_sub(waits).checked_div(width.saturating_add(space)).unwrap_or(0);
+        let limit_hz = CLOCKS_PER_SECOND.saturating_sub(waits).checked_div(pulse).unwrap_or(0);
         // pulses a second = nm/min * denominator / (60 * numerator), rounded up
         let per_minute = self.max_feed.nm_per_min().saturating_mul(u64::from(self.pulse.denominator()));
         let needed_hz = to_u32(per_minute.div_ceil(u64::from(self.pulse.numerator()).saturating_mul(60).max(1)));
@@ -167,7 +172,9 @@ impl Config {
             return Err(ConfigError::PulseRatio);
         }
         let event_min = clocks(self.event_min_ns).max(1);
-        Ok(Machine { x: self.x.check(Axis::X, event_min)?, z: self.z.check(Axis::Z, event_min)?, event_min })
+        let x = self.x.check(Axis::X, event_min, self.z.pulse_width_ns)?;
+        let z = self.z.check(Axis::Z, event_min, self.x.pulse_width_ns)?;
+        Ok(Machine { x, z, event_min })
     }
 }
 
