@@ -284,7 +284,7 @@ mod tests {
         for length in 1_019..=1_021_u16 {
             let mut queue = TrainQueue::new();
             let (mut writer, mut player) = queue.split();
-            let mut write = |writer: &mut Writer<'_>, length: u16, first: u16| {
+            let write = |writer: &mut Writer<'_>, length: u16, first: u16| {
                 (0..length).for_each(|n| writer.put(event(first + n, 5)));
                 writer.publish();
             };
