@@ -99,7 +99,7 @@ mod app {
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let have = board::setup(cx.device);
-        let Board { parameters, mut sender, drives, .. } = have;
+        let Board { parameters, mut sender, drives, mut timer, .. } = have;
         let Ok(machine) = parameters.machine() else { board::safe() };
         let (train, player) = cx.local.train_queue.split();
         let (bytes_in, bytes) = cx.local.bytes_queue.split();
@@ -117,13 +117,14 @@ mod app {
         let mut link = Link::new(parameters, machine);
         link.banner(&mut sender);
         rtic::pend(Interrupt::I2C3_ER); // the first tick, played while the second is made
+        timer.start(); // the banner alone takes more than a tick
         let inbox = Inbox::new(bytes_in, realtime_in);
         (
             Shared {},
             Local {
                 emergency: have.emergency,
                 switch: drives,
-                steps: Steps { player, timer: have.timer, port: have.port },
+                steps: Steps { player, timer, port: have.port },
                 foreground,
                 train,
                 contact: have.contact,

@@ -52,7 +52,7 @@ where
     contact.trigger_on_edge(&mut exti, stm32f4xx_hal::gpio::Edge::Rising);
     contact.enable_interrupt(&mut exti);
     let (receiver, sender) = link_port::open(usart, link, rcc);
-    let timer = StepTimer::start(timer, TIMER_DIVIDER, rcc);
+    let timer = StepTimer::new(timer, TIMER_DIVIDER, rcc);
     Board {
         timer,
         port: steps,
@@ -103,8 +103,8 @@ pub(crate) struct StepTimer {
 }
 
 impl StepTimer {
-    /// Starts the clock with an idle tick. `prescaler` makes 12 MHz of the timer's clock.
-    pub(crate) fn start(timer: TIM5, prescaler: u16, rcc: &mut Rcc) -> Self {
+    /// Sets the clock up, which still stands. `prescaler` makes 12 MHz of the timer's clock.
+    fn new(timer: TIM5, prescaler: u16, rcc: &mut Rcc) -> Self {
         TIM5::enable(rcc);
         TIM5::reset(rcc);
         timer.psc().write(|w| w.psc().set(prescaler.wrapping_sub(1)));
@@ -114,10 +114,14 @@ impl StepTimer {
         timer.egr().write(|w| w.ug().set_bit());
         timer.sr().write(|w| w.uif().clear_bit());
         timer.dier().write(|w| w.uie().set_bit());
-        timer.cr1().write(|w| w.urs().set_bit().cen().set_bit());
-        // SAFETY: the timer's only owner gives it up here, for ever; in an emergency only CR1 is written by others.
+        // SAFETY: the timer's only owner gives it up here, for ever.
         #[allow(unsafe_code, reason = "the registers for ever")]
         Self { timer: unsafe { Registers::new(TIM5::ptr()) } }
+    }
+
+    /// Starts the clock with an idle tick. Last of all: a tick later the train must be there.
+    pub(crate) fn start(&mut self) {
+        self.timer.cr1().write(|w| w.urs().set_bit().cen().set_bit());
     }
 
     /// Takes the interrupt.

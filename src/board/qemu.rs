@@ -41,7 +41,7 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
         }
     });
     Board {
-        timer: StepTimer::start(dp.TIM5),
+        timer: StepTimer::new(dp.TIM5),
         port: StepPort::new(dp.GPIOE, dp.GPIOF),
         drives: Drives,
         emergency: EmergencyInput,
@@ -61,13 +61,17 @@ pub(crate) struct StepTimer {
 }
 
 impl StepTimer {
-    fn start(timer: TIM5) -> Self {
+    fn new(timer: TIM5) -> Self {
         timer.dier().write(|w| w.uie().set_bit());
         timer.arr().write(|w| w.arr().set(nanoseconds(TICK_CLOCKS)));
-        timer.cr1().write(|w| w.cen().set_bit());
         // SAFETY: the timer's only owner gives it up here, for ever.
         #[allow(unsafe_code, reason = "the registers for ever")]
         Self { timer: unsafe { Registers::new(TIM5::ptr()) } }
+    }
+
+    /// Starts the clock with an idle tick.
+    pub(crate) fn start(&mut self) {
+        self.timer.cr1().write(|w| w.cen().set_bit());
     }
 
     /// Takes the interrupt.
