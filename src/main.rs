@@ -174,7 +174,9 @@ mod app {
         bench.due(foreground.state(), &mut |command| foreground.obey(command));
         let report = foreground.tick(train);
         train.publish();
-        drives.follow(foreground.outputs());
+        if !STRUCK.load(Relaxed) {
+            drives.follow(foreground.outputs());
+        }
         if STRUCK.load(Relaxed) {
             drives.off(); // the emergency task came between
         }

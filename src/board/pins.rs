@@ -114,9 +114,8 @@ impl Drives {
     pub(crate) fn follow(&mut self, outputs: Outputs) {
         set::<this::Spindle>(outputs.spindle);
         set::<this::Motors>(outputs.motors);
-        if outputs.motors {
-            Self::steps(1);
-        }
+        // what is in the train still plays when the drivers are off
+        Self::steps(u32::from(outputs.motors));
     }
 
     /// All off at once, and no step leaves the chip.
