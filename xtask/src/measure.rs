@@ -8,8 +8,9 @@
 //! A **step event** is an event with at least one rising edge; its falling edge is part of its cost. Means are over
 //! all ticks at full speed (at least 95 % of the steps of the busiest tick); the worst is the costliest of them. What
 //! `interpolate` takes for each step event more is told from a slow and a fast case of the same curve; the rest of a
-//! tick is what it takes besides steps, where a block begins or the tool brakes more than at full speed. Entry and exit of an interrupt are no instructions; the chip's share counts them as 24 clocks a call,
-//! and an instruction as 1.35 clocks of 168 MHz.
+//! tick is what it takes besides steps, where a block begins or the tool brakes more than at full speed. Entry and exit
+//! of an interrupt are no instructions; the chip's share counts them as 24 clocks a call, and an instruction as 1.35
+//! clocks of 168 MHz.
 
 use std::fs;
 use std::path::{Path, PathBuf};
