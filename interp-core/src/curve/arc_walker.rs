@@ -301,6 +301,12 @@ impl ArcWalker {
         self.target = (self.x, self.z);
     }
 
+    /// Whether the recurrence's changing figures are all within `most`.
+    #[cfg(test)]
+    pub(super) fn fits(&self, most: i64) -> bool {
+        [self.decision, self.major_rise, self.minor_rise].iter().all(|figure| (-most..=most).contains(figure))
+    }
+
     /// Undoes one step inside the octant.
     fn octant_back(&mut self) -> Step {
         self.done = self.done.wrapping_sub(1);

@@ -15,6 +15,9 @@ pub mod prepare_arc;
 pub mod proportion;
 pub mod strides;
 
+#[cfg(test)]
+mod row_tests;
+
 /// One step of a walker: -1, 0 or 1 pulse of each axis, at least one of them not 0.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Step {

@@ -1,0 +1,79 @@
+//! Rows of an arc against its single steps, and the figures of narrow rows against 32 bits.
+
+use super::Walker;
+use super::arc_walker::ArcWalker;
+use super::prepare_arc::{Metric, Prepared, Reach};
+use crate::units::{Lattice, PulseSize, Sense};
+use proptest::prelude::*;
+
+/// One row of at most `most` steps, in the width that the walker says.
+fn row(walker: &mut ArcWalker, most: u32) -> u32 {
+    let count = walker.left_in_row().min(most);
+    let narrow = walker.is_narrow();
+    if count > 0 && narrow {
+        walker.row::<i32>(|row| (count, (0..count).map(|_| u32::from(row.turns())).sum()));
+    } else if count > 0 {
+        walker.row::<i64>(|row| (count, (0..count).map(|_| u32::from(row.turns())).sum()));
+    }
+    count
+}
+
+/// Walks an arc both ways at once, and looks at the figures.
+fn compare(sizes: [(u32, u32); 2], end: Lattice, centre: (i64, i64), sense: Sense, reach: Reach, most: u32) {
+    let [x, z] = sizes.map(|(numerator, denominator)| PulseSize::new(numerator, denominator).unwrap());
+    let Prepared::Arc(arc, _) = Metric::new(x, z).arc(Lattice::default(), end, centre, sense, reach) else {
+        return;
+    };
+    let (mut single, mut rows) = (arc.walk(), arc.walk());
+    loop {
+        let count = row(&mut rows, most);
+        let made = if count > 0 { count } else { u32::from(rows.next_step().is_some()) };
+        if made == 0 {
+            break;
+        }
+        for _ in 0..made {
+            let narrow = single.is_narrow();
+            assert!(single.next_step().is_some());
+            assert!(!narrow || single.fits(i64::from(i32::MAX)), "{single:?}");
+        }
+        assert_eq!(single, rows);
+    }
+    assert_eq!((single.next_step(), single.position()), (None, (end.x, end.z)));
+}
+
+proptest! {
+    /// Any arcs; nearly all of them are too large for 32 bits.
+    #[test]
+    fn rows_lead_where_single_steps_lead(
+        sizes in prop_oneof![
+            Just([(1000, 1), (1000, 1)]), Just([(1250, 1), (2500, 1)]), Just([(15_875, 8), (25_400, 20)]),
+            Just([(10, 1), (1280, 1)]), Just([(1_000_000, 1), (31_250, 4)]), Just([(10, 1), (10, 1)]),
+        ],
+        ends in [-20_000_i32..20_000, -20_000_i32..20_000], finer in 0_u32..12, tilt in [-3_i64..=3, -3_i64..=3],
+        far in -400_i64..400, clockwise in any::<bool>(), long in any::<bool>(), most in 1_u32..4000,
+    ) {
+        let end = Lattice { x: ends[0] >> finer, z: ends[1] >> finer };
+        let place = |(numerator, denominator): (u32, u32), at: i32| i64::from(at) * i64::from(numerator) / i64::from(denominator);
+        let (ex, ez) = (place(sizes[0], end.x), place(sizes[1], end.z));
+        // near the bisector, any distance from the chord
+        let centre = (ex / 2 - ez * far / 100 + tilt[0], ez / 2 + ex * far / 100 + tilt[1]);
+        let sense = if clockwise { Sense::Clockwise } else { Sense::CounterClockwise };
+        compare(sizes, end, centre, sense, if long { Reach::Long } else { Reach::Short }, most);
+    }
+
+    /// Arcs through mirrored points about a lattice point have the smallest coefficients: the squares of the sizes'
+    /// ratio. Their figures come to lie on both sides of what 32 bits hold.
+    #[test]
+    fn narrow_rows_lead_where_single_steps_lead(
+        sizes in [1000_u32..1600, 1000_u32..1600], centre in [-60_000_i32..60_000, -60_000_i32..60_000],
+        finer in 0_u32..14, mirror in [any::<bool>(), any::<bool>()], clockwise in any::<bool>(), most in 1_u32..4000,
+    ) {
+        let [x, z] = centre.map(|at| at >> finer);
+        let end = Lattice { x: if mirror[0] { 2 * x } else { 0 }, z: if mirror[1] { 2 * z } else { 0 } };
+        let at = (i64::from(x) * i64::from(sizes[0]), i64::from(z) * i64::from(sizes[1]));
+        let sense = if clockwise { Sense::Clockwise } else { Sense::CounterClockwise };
+        let sizes = sizes.map(|size| (size, 1));
+        compare(sizes, end, at, sense, Reach::Long, most);
+        compare(sizes, end, at, sense, Reach::Short, most);
+    }
+}
