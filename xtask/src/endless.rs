@@ -264,6 +264,10 @@ impl Test<'_> {
         let steps = 200 + scattered(number, 2_000);
         rig.wait("motion", |record| record.steps > steps)?;
         let mut debugger = Debugger::attach(&rig.debugger)?;
+        if rig.is_over() {
+            // on a computer so busy that the program was faster: that tells nothing of what is left
+            return Ok(Stop::Void);
+        }
         debugger.patch(self.spin, LOOP)?;
         let mut wanted = self.left.lock().map_err(|_| anyhow::anyhow!("another run broke off"))?.clone();
         for place in &wanted {
@@ -426,6 +430,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let done = done.into_inner();
     if failed > 0 || done == 0 {
         bail!("a loop in the background changed pulses: {failed} of {} points", done.saturating_add(failed));
+    }
+    // fewer than all functions may run at all, but then nobody asked for a number
+    if let Some(points) = arguments.points.filter(|points| done < *points) {
+        bail!("only {done} of {points} points were met");
     }
     println!("{done} endless loops in the background, not a pulse changed");
     Ok(())
