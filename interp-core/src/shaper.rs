@@ -112,7 +112,13 @@ pub struct Shaper {
     levels: Levels,
     /// When it began.
     began: i32,
+    /// Events of the next tick that are known already: steps that come in a crowd run past the border.
+    early: [Event; EARLY],
+    early_count: usize,
 }
+
+/// Most events of the next tick that are kept. A curve's end and the joint of two octants owe three steps at most.
+const EARLY: usize = 12;
 
 impl Shaper {
     /// A shaper whose pins are all low.
@@ -129,6 +135,8 @@ impl Shaper {
             quiet: if x.width == z.width { larger(x.width, event_min).wrapping_add(after) } else { NEVER },
             levels: Levels::LOW,
             began: 0,
+            early: [Event::from_word(0); EARLY],
+            early_count: 0,
         }
     }
 
@@ -162,6 +170,7 @@ impl Shaper {
         out: &mut impl Train,
     ) -> Made {
         let mut made = Made { steps: 0, diagonals: 0 };
+        self.catch_up(out);
         if !strides.agree(self.levels) {
             self.face(strides, times.clock(), out);
         }
@@ -211,6 +220,7 @@ impl Shaper {
     /// whose first step comes later then need not wait for the set-up time.
     #[cold]
     pub fn face(&mut self, strides: &Strides, due: i32, out: &mut impl Train) {
+        self.catch_up(out);
         for axis in [Axis::X, Axis::Z] {
             let Some(plus) = strides.turned(axis, self.levels) else { continue };
             self.fall_until(due, out);
@@ -248,6 +258,7 @@ impl Shaper {
     /// and `z` is -1, 0 or 1.
     #[inline]
     pub fn step(&mut self, due: u32, x: i8, z: i8, out: &mut impl Train) {
+        self.catch_up(out);
         let mut due = clamped(due);
         if x != 0 {
             due = self.prepare(Axis::X, x > 0, due, out);
@@ -276,6 +287,7 @@ impl Shaper {
 
     /// Ends the tick: what is left of it is handed out, and times count from the next.
     pub fn end_tick(&mut self, out: &mut impl Train) {
+        self.catch_up(out);
         let border = BORDER;
         self.fall_until(border.wrapping_add(self.event_min).wrapping_sub(1), out);
         if self.began < border {
@@ -289,7 +301,7 @@ impl Shaper {
 
     /// Whether both step pins are low and nothing runs past the tick.
     pub const fn at_rest(&self) -> bool {
-        self.x.fall == NEVER && self.z.fall == NEVER && self.began == 0
+        self.x.fall == NEVER && self.z.fall == NEVER && self.began == 0 && self.early_count == 0
     }
 
     const fn pins(&mut self, axis: Axis) -> &mut Pins {
@@ -380,15 +392,42 @@ impl Shaper {
         }
     }
 
+    /// Hands out what the tick before has found out.
+    #[inline]
+    fn catch_up(&mut self, out: &mut impl Train) {
+        if self.early_count != 0 && self.began < BORDER {
+            for event in self.early.iter().take(self.early_count) {
+                out.put(*event);
+            }
+            self.early_count = 0;
+        }
+    }
+
     /// Begins an event, handing out the one before it.
     #[inline]
     fn put(&mut self, at: i32, levels: Levels, out: &mut impl Train) {
-        let border = BORDER;
-        if self.began < border && at > border {
-            out.put(Event::new(self.levels, clocks(border.wrapping_sub(self.began))));
-            self.began = border;
+        if self.began >= BORDER {
+            self.put_early(at, levels);
+            return;
+        }
+        if at > BORDER {
+            out.put(Event::new(self.levels, clocks(BORDER.wrapping_sub(self.began))));
+            self.began = BORDER;
+            self.put_early(at, levels);
+            return;
         }
         out.put(Event::new(self.levels, clocks(at.wrapping_sub(self.began))));
+        self.levels = levels;
+        self.began = at;
+    }
+
+    /// The same behind the border: what is to be handed out belongs to the next tick.
+    #[cold]
+    fn put_early(&mut self, at: i32, levels: Levels) {
+        if let Some(place) = self.early.get_mut(self.early_count) {
+            *place = Event::new(self.levels, clocks(at.wrapping_sub(self.began)));
+            self.early_count = self.early_count.wrapping_add(1);
+        }
         self.levels = levels;
         self.began = at;
     }
