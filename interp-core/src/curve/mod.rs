@@ -10,7 +10,9 @@
 
 pub mod arc;
 pub mod arc_walker;
+mod around;
 pub mod line;
+pub mod point_comparison;
 pub mod prepare_arc;
 pub mod proportion;
 pub mod strides;
@@ -33,4 +35,14 @@ pub trait Walker {
     fn next_step(&mut self) -> Option<Step>;
     /// The step that led here, undone, or `None` at the start.
     fn previous_step(&mut self) -> Option<Step>;
+}
+
+/// Enumerates the steps of one curve where a step does not tell where it came from: the classic methods on circles.
+/// Backward they walk the reversed curve, which leads to the start exactly, over points of its own.
+pub trait OneWay: Sized {
+    /// The next step, or `None` at the end.
+    fn next_step(&mut self) -> Option<Step>;
+    /// From here back to the start.
+    #[must_use]
+    fn reversed(&self) -> Self;
 }
