@@ -125,6 +125,11 @@ impl Around {
         self.gradient
     }
 
+    /// Half of what a pulse changes the gradient by, X and Z.
+    pub(crate) const fn weight(&self) -> [i64; 2] {
+        self.weight
+    }
+
     /// Travel is clockwise.
     pub(crate) const fn clockwise(&self) -> bool {
         self.clockwise

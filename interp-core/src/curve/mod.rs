@@ -11,10 +11,13 @@
 pub mod arc;
 pub mod arc_walker;
 mod around;
+pub mod dda;
+pub mod fraction;
 pub mod line;
 pub mod point_comparison;
 pub mod prepare_arc;
 pub mod proportion;
+pub mod rate_multiplier;
 pub mod strides;
 
 #[cfg(test)]

@@ -15,9 +15,10 @@
 //! From outside (`D >= 0`) the axis steps whose travel leads inward. Counter-clockwise where x and z have one sign that
 //! is Z; it is X where they differ, and both swap clockwise and again inside: three exclusive-ors.
 //!
-//! **Error on a circle.** An inward step is made from `D >= 0` and takes at most `2 R + 1`; an outward one from `D < 0`
-//! and adds as much. Since `D = (r - R)(r + R)`, the point stays within about a pulse; the tests look at
-//! every step of all full circles of 2 to 2000 pulses: at most 1 pulse.
+//! **Error on a circle.** From outside a step leads inward, and by at most one pulse; from inside outward by at most one.
+//! So the point stays within a pulse of the circle. (Where a step passes an axis of the circle its far side counts, too:
+//! up to `1/(2 R)` more with a centre off the lattice. About a lattice point it is at most 1, and full circles of 2 to
+//! 2000 pulses are tested.)
 //!
 //! **Line** to (n_x, n_z): `F = n_z x - n_x z` in the quadrant's own signs, 0 on the line. At `F >= 0` Z steps and `F`
 //! falls by n_x, else X steps and it rises by n_z. So `-n_x <= F < n_z`, and the distance from the line,
