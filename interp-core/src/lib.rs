@@ -9,6 +9,7 @@ pub mod config;
 pub mod curve;
 pub mod governor;
 pub mod math;
+pub mod ramp;
 pub mod ring;
 pub mod shaper;
 pub mod times;
