@@ -11,9 +11,11 @@
 pub mod arc;
 pub mod arc_walker;
 mod around;
+pub mod conic;
 pub mod dda;
 pub mod fraction;
 pub mod line;
+mod octants;
 pub mod point_comparison;
 pub mod prepare_arc;
 pub mod proportion;

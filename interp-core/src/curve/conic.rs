@@ -1,0 +1,279 @@
+//! Axis-parallel ellipse and parabola by minimum deviation: exact integer walks, both ways.
+//!
+//! On the lattice both are the conic that a circle is there, `F = a x^2 + b z^2 - c x - d z`, and so the walk of an
+//! [`Arc`](super::arc) serves them: an ellipse with semi-axes S_x, S_z has `a : b = (p_x S_z)^2 : (p_z S_x)^2`, and a
+//! parabola `x^2 = 2 p z` along Z has `a = p_x^2`, `b = 0`, `d = 2 p p_z` about its vertex. The ratio is exact where 55 bits
+//! hold the gradient, else the nearest. Both ends are rounded to the lattice and the curve is moved so that it passes
+//! through them: an ellipse along the chord, a parabola square to its axis.
+//!
+//! An ellipse through two rounded ends is a little larger or smaller than the programmed one: by up to half a pulse at an
+//! end, and so by up to half a pulse times the ratio of its half axes elsewhere.
+//!
+//! These walks have no timeline yet: they tell where, not when.
+
+use super::arc::{Arc, Timeline};
+use super::arc_walker::ArcWalker;
+use super::octants::Octants;
+use super::prepare_arc::Reach;
+use crate::math::{Wide, scale, to_i64};
+use crate::units::{Axis, Lattice, Length, PulseSize, Sense};
+
+/// An axis-parallel ellipse; coordinates in nm.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Ellipse {
+    /// Centre, X and Z.
+    pub centre: (i64, i64),
+    /// Half axes along X and along Z.
+    pub half_axes: (Length, Length),
+}
+
+/// A parabola that opens along an axis; coordinates in nm.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Parabola {
+    /// Vertex, X and Z.
+    pub vertex: (i64, i64),
+    /// The axis along which it opens.
+    pub axis: Axis,
+    /// Twice the focal length: `across^2 = 2 parameter along`; negative where it opens toward minus.
+    pub parameter: Length,
+}
+
+/// Why a conic is not walked.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum ConicRefusal {
+    /// A half axis is not positive, or the parameter is 0.
+    Flat,
+    /// Start and end are the same lattice point, and no whole turn is meant.
+    NoPulse,
+    /// The start or the end is off the curve by more than two pulses.
+    OffCurve,
+    /// So small or flat, measured in pulses, that no chain of lattice points follows it.
+    TooSmall,
+    /// A coordinate leaves the range of 2^29 pulses.
+    OutOfRange,
+}
+
+impl core::fmt::Display for ConicRefusal {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Flat => "a half axis or the parameter is zero: give a positive one",
+            Self::NoPulse => "start and end round to the same pulse: leave the curve out",
+            Self::OffCurve => "an end is more than two pulses off the curve: correct the end or the curve",
+            Self::TooSmall => "the curve is smaller than the pulses can follow: use a line",
+            Self::OutOfRange => "the curve leaves the range of the axes: bring it nearer",
+        })
+    }
+}
+
+/// A prepared ellipse or parabola.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Conic(Arc);
+
+impl Conic {
+    /// A walker at the start.
+    pub fn walk(&self) -> ArcWalker {
+        self.0.walk()
+    }
+
+    /// The end, X then Z, pulses from the start.
+    pub const fn end(&self) -> (i32, i32) {
+        self.0.end()
+    }
+
+    fn new(octants: Option<Octants>) -> Result<Self, ConicRefusal> {
+        let octants = octants.ok_or(ConicRefusal::TooSmall)?;
+        // the walker asks for the centre only to know the far side of the curve; a parabola's is far away
+        let centre = |weight: i128, twice: i128| {
+            if weight == 0 {
+                to_i64(twice.signum()) << 46
+            } else {
+                to_i64(scale(twice, 1 << 16, weight.wrapping_mul(2)))
+            }
+        };
+        let centre = [centre(octants.a, octants.c), centre(octants.b, octants.d)];
+        let timeline = Timeline { centre, ..Timeline::default() };
+        octants.arc(timeline).map(Self).ok_or(ConicRefusal::TooSmall)
+    }
+}
+
+/// A pulse size as numerator and denominator.
+fn ratio(pulse: PulseSize) -> (i128, i128) {
+    (i128::from(pulse.numerator()), i128::from(pulse.denominator()))
+}
+
+/// From the start to a point (nm), as pulses: numerator and denominator.
+fn pulses(pulse: PulseSize, to: i64, start: i32) -> (i128, i128) {
+    let (num, den) = ratio(pulse);
+    (i128::from(to).times(den).wrapping_sub(i128::from(start).times(num)), num)
+}
+
+/// The difference of two lattice points; `None` past 2^29 pulses.
+fn delta(start: Lattice, end: Lattice) -> Option<(i32, i32)> {
+    let part = |from: i32, to: i32| to.checked_sub(from).filter(|d| d.unsigned_abs() <= 1 << 29);
+    Some((part(start.x, end.x)?, part(start.z, end.z)?))
+}
+
+/// Bits of a magnitude.
+const fn bits(value: i128) -> u32 {
+    128_u32.wrapping_sub(value.unsigned_abs().leading_zeros())
+}
+
+/// Two positive numbers in their ratio, with at most `most` bits.
+fn shortened(a: i128, b: i128, most: u32) -> (i128, i128) {
+    let (mut p, mut q) = (a, b);
+    while let Some(rest) = p.rest(q) {
+        (p, q) = (q, rest);
+    }
+    let (a, b) = (a.quotient(p).unwrap_or(1), b.quotient(p).unwrap_or(1));
+    let cut = bits(a.max(b)).saturating_sub(most);
+    (a.wrapping_shr(cut).max(1), b.wrapping_shr(cut).max(1))
+}
+
+/// Whether a deviation is more than what two pulses change it by.
+fn is_off(deviation: i128, by_a_pulse: (i128, i128)) -> bool {
+    let longer = by_a_pulse.0.saturating_abs().max(by_a_pulse.1.saturating_abs());
+    deviation.saturating_abs() > longer.saturating_mul(2)
+}
+
+impl Ellipse {
+    /// Prepares the way from `start` to `end`; `reach` says whether it is the way round of at most half a turn or the
+    /// other one; the same end as start is a whole turn then.
+    pub fn arc(
+        &self,
+        (x, z): (PulseSize, PulseSize),
+        start: Lattice,
+        end: Lattice,
+        (sense, reach): (Sense, Reach),
+    ) -> Result<Conic, ConicRefusal> {
+        let (half_x, half_z) = (i128::from(self.half_axes.0.nm()), i128::from(self.half_axes.1.nm()));
+        if half_x <= 0 || half_z <= 0 {
+            return Err(ConicRefusal::Flat);
+        }
+        let to = delta(start, end).ok_or(ConicRefusal::OutOfRange)?;
+        if to == (0, 0) && reach == Reach::Short {
+            return Err(ConicRefusal::NoPulse);
+        }
+        // half axes in pulses, 16 fraction bits
+        let ((nx, dx), (nz, dz)) = (ratio(x), ratio(z));
+        let (rx, rz) = (scale(half_x, dx << 16, nx), scale(half_z, dz << 16, nz));
+        if rx.max(rz) >> 16 > 1 << 28 {
+            return Err(ConicRefusal::OutOfRange);
+        }
+        if rx.min(rz) < 1 << 16 {
+            return Err(ConicRefusal::TooSmall);
+        }
+        // a : b = (p_x S_z)^2 : (p_z S_x)^2, below 2^67 each before the square
+        let (p, q) = shortened(nx.times(dz).times(half_z), nz.times(dx).times(half_x), 60);
+        let (a, b) = (p.times(p), q.times(q));
+        // the largest gradient, 2 a r_x or 2 b r_z, below 2^56
+        let reach_bits = |weight: i128, r: i128| bits(weight).wrapping_add(bits(r >> 16));
+        let excess = reach_bits(a, rx).max(reach_bits(b, rz)).saturating_sub(55);
+        let room = 55_u32.saturating_sub(reach_bits(a, rx).max(reach_bits(b, rz)));
+        let fit = |weight: i128| {
+            let half = if excess > 0 { 1_i128.wrapping_shl(excess.wrapping_sub(1)) } else { 0 };
+            weight.wrapping_add(half).wrapping_shr(excess).max(1).wrapping_shl(room)
+        };
+        let (a, b) = (fit(a), fit(b));
+        let ((ox, ux), (oz, uz)) = (pulses(x, self.centre.0, start.x), pulses(z, self.centre.1, start.z));
+        let (c, d) = (scale(a.wrapping_mul(2), ox, ux), scale(b.wrapping_mul(2), oz, uz));
+        if self.is_off((x, z), start) || self.is_off((x, z), end) {
+            return Err(ConicRefusal::OffCurve);
+        }
+        Conic::new(Octants::through([a, b, c, d], to, (sense, reach)))
+    }
+
+    /// Whether a lattice point is more than two pulses off the ellipse.
+    fn is_off(&self, (x, z): (PulseSize, PulseSize), at: Lattice) -> bool {
+        let (u, v) = (place(x, at.x, self.centre.0), place(z, at.z, self.centre.1));
+        let (half_x, half_z) = (i128::from(self.half_axes.0.nm()), i128::from(self.half_axes.1.nm()));
+        if u.abs().max(v.abs()) >= 1 << 32 {
+            return true;
+        }
+        // u^2 S_z^2 + v^2 S_x^2 - S_x^2 S_z^2, below 2^127, and what a pulse changes it by
+        let (square_x, square_z) = (half_x.times(half_x), half_z.times(half_z));
+        let deviation = u.times(u).times(square_z).saturating_add(v.times(v).times(square_x));
+        let deviation = deviation.saturating_sub(square_x.times(square_z));
+        is_off(
+            deviation,
+            (u.wrapping_mul(2).times(square_z).times(size(x)), v.wrapping_mul(2).times(square_x).times(size(z))),
+        )
+    }
+}
+
+/// A pulse in nm, rounded up.
+fn size(pulse: PulseSize) -> i128 {
+    let (num, den) = ratio(pulse);
+    num.quotient(den).unwrap_or(0).wrapping_add(1)
+}
+
+/// From a point (nm) to a lattice line, nm.
+fn place(pulse: PulseSize, at: i32, from: i64) -> i128 {
+    let (num, den) = ratio(pulse);
+    scale(i128::from(at), num, den).wrapping_sub(i128::from(from))
+}
+
+impl Parabola {
+    /// Prepares the way from `start` to `end`.
+    pub fn arc(&self, (x, z): (PulseSize, PulseSize), start: Lattice, end: Lattice) -> Result<Conic, ConicRefusal> {
+        let parameter = i128::from(self.parameter.nm());
+        if parameter == 0 {
+            return Err(ConicRefusal::Flat);
+        }
+        let to = delta(start, end).ok_or(ConicRefusal::OutOfRange)?;
+        // across is squared, along is not
+        let (pulse_across, pulse_along) = if self.axis == Axis::Z { (x, z) } else { (z, x) };
+        let (vertex_across, start_across, to_across) = match self.axis {
+            Axis::Z => (self.vertex.0, start.x, to.0),
+            Axis::X => (self.vertex.1, start.z, to.1),
+        };
+        if to_across == 0 {
+            return Err(ConicRefusal::NoPulse);
+        }
+        let ((n, d), (m, k)) = (ratio(pulse_across), ratio(pulse_along));
+        // (n / d)^2 u^2 = 2 p (m / k) v: n^2 k below 2^60, 2 p m d^2 below 2^80
+        let (a, e) = shortened(n.times(n).times(k), parameter.abs().wrapping_mul(2).times(m).times(d).times(d), 90);
+        let (off, unit) = pulses(pulse_across, vertex_across, start_across);
+        let far = off.abs().max(off.wrapping_sub(i128::from(to_across).times(unit)).abs());
+        let far = far.quotient(unit).unwrap_or(0).wrapping_add(1);
+        if far > 1 << 29 {
+            return Err(ConicRefusal::OutOfRange);
+        }
+        // both gradients, 2 a u and e, below 2^56
+        let size = bits(a).wrapping_add(bits(far)).wrapping_add(1).max(bits(e));
+        let (excess, room) = (size.saturating_sub(56), 56_u32.saturating_sub(size));
+        let fit = |weight: i128| weight.wrapping_shr(excess).wrapping_shl(room);
+        let (a, e) = (fit(a), fit(e));
+        if a == 0 || e == 0 {
+            return Err(ConicRefusal::TooSmall);
+        }
+        let c = scale(a.wrapping_mul(2), off, unit);
+        let e = if parameter < 0 { e.wrapping_neg() } else { e };
+        // seen from the side that it is open to, the way across is clockwise or not
+        let falls = to_across < 0;
+        let (conic, counter) = match self.axis {
+            Axis::Z => ([a, 0, c, e], falls == (e > 0)),
+            Axis::X => ([0, a, e, c], falls != (e > 0)),
+        };
+        let sense = if counter { Sense::CounterClockwise } else { Sense::Clockwise };
+        if self.is_off((x, z), start) || self.is_off((x, z), end) {
+            return Err(ConicRefusal::OffCurve);
+        }
+        Conic::new(Octants::through(conic, to, (sense, Reach::Short)))
+    }
+
+    /// Whether a lattice point is more than two pulses off the parabola.
+    fn is_off(&self, (x, z): (PulseSize, PulseSize), at: Lattice) -> bool {
+        let (dx, dz) = (place(x, at.x, self.vertex.0), place(z, at.z, self.vertex.1));
+        let (across, along, across_size, along_size) = match self.axis {
+            Axis::Z => (dx, dz, size(x), size(z)),
+            Axis::X => (dz, dx, size(z), size(x)),
+        };
+        let twice = i128::from(self.parameter.nm()).wrapping_mul(2);
+        let deviation = across.times(across).wrapping_sub(twice.times(along));
+        is_off(deviation, (across.wrapping_mul(2).times(across_size), twice.times(along_size)))
+    }
+}
+
+#[cfg(test)]
+#[path = "conic_tests.rs"]
+mod tests;
