@@ -8,6 +8,7 @@
 use crate::config::{FRACTION_BITS, Machine, speed_of};
 use crate::curve::arc::Arc;
 use crate::curve::line::Line;
+use crate::curve::method::Method;
 use crate::curve::prepare_arc::{Metric, Prepared, Reach};
 use crate::curve::proportion::Proportion;
 use crate::math::{RADIAN_Q30, Wide, root_wide, scale, to_i64, to_u32};
@@ -47,14 +48,37 @@ pub enum Curve {
     Line(Line, Proportion),
     /// Round.
     Arc(Arc),
+    /// Straight by a classic method; from length to pulses of the major axis, 16 fraction bits.
+    #[cfg(feature = "methods")]
+    ClassicLine(Line, Proportion, Method),
+    /// Round by a classic method.
+    #[cfg(feature = "methods")]
+    ClassicArc(Arc, Method),
 }
 
 impl Curve {
+    /// The arc, where it is one.
+    #[inline]
+    pub const fn round(&self) -> Option<&Arc> {
+        match self {
+            Self::Line(..) => None,
+            Self::Arc(arc) => Some(arc),
+            #[cfg(feature = "methods")]
+            Self::ClassicLine(..) => None,
+            #[cfg(feature = "methods")]
+            Self::ClassicArc(arc, _) => Some(arc),
+        }
+    }
+
     /// The end, X then Z, pulses from the start.
     pub const fn end(&self) -> (i32, i32) {
         match self {
             Self::Line(line, _) => line.end(),
             Self::Arc(arc) => arc.end(),
+            #[cfg(feature = "methods")]
+            Self::ClassicLine(line, ..) => line.end(),
+            #[cfg(feature = "methods")]
+            Self::ClassicArc(arc, _) => arc.end(),
         }
     }
 }
@@ -184,6 +208,16 @@ impl Builder {
         self.lattice
     }
 
+    /// The method that the machine asks for.
+    pub const fn method(&self) -> Method {
+        self.machine.method
+    }
+
+    /// Whether arcs are walked by minimum deviation in place of the method that the machine asks for.
+    pub const fn arcs_fall_back(&self) -> bool {
+        !self.machine.method.serves_arcs()
+    }
+
     /// Notes that the tool comes to a standstill here.
     pub const fn standstill(&mut self) {
         self.heading = None;
@@ -252,7 +286,15 @@ impl Builder {
         let accel = Self::least(self.machine.x.accel, self.machine.z.accel, heading).0;
         let steps = Proportion::new(u64::from(line.steps()) << 16, length, length);
         let run = Run { length, entry: heading, exit: heading, by_axis, by_bend: Speed::MAX, accel };
-        self.finish(Curve::Line(line, steps), &run, pace, built);
+        #[cfg(feature = "methods")]
+        let curve = match self.machine.method {
+            // a line is its own chord
+            Method::MinimumDeviation | Method::TimeDivision => Curve::Line(line, steps),
+            method => Curve::ClassicLine(line, steps, method),
+        };
+        #[cfg(not(feature = "methods"))]
+        let curve = Curve::Line(line, steps);
+        self.finish(curve, &run, pace, built);
     }
 
     /// How an arc to `end` is walked: a long one whole where that moves its centre by at most a 16th of a coarser
@@ -293,7 +335,14 @@ impl Builder {
                 let square = u128::from(accel).wrapping_mul(u128::from(arc.radius()));
                 let by_bend = to_u32(root_wide(square.wrapping_mul(CURVATURE_SHARE) / 1000));
                 let run = Run { length: arc.length().max(1), entry, exit, by_axis, by_bend, accel };
-                self.finish(Curve::Arc(arc), &run, pace, built);
+                #[cfg(feature = "methods")]
+                let curve = match self.machine.method {
+                    Method::MinimumDeviation | Method::RateMultiplier | Method::Fraction => Curve::Arc(arc),
+                    method => Curve::ClassicArc(arc, method),
+                };
+                #[cfg(not(feature = "methods"))]
+                let curve = Curve::Arc(arc);
+                self.finish(curve, &run, pace, built);
             }
         }
     }

@@ -11,6 +11,7 @@ use feature_editor::codes::{
 };
 use interp_core::block::{ArcRefusal, Block, Builder, Limited, Output, Pace, Path, Work};
 use interp_core::config::Machine;
+use interp_core::curve::method::Method;
 use interp_core::units::{Axis, Lattice, Point};
 
 /// Something to say about a program.
@@ -24,6 +25,13 @@ pub enum Finding {
         line: u32,
         /// What is left.
         limited: Limited,
+    },
+    /// A warning, once a program: the method that the machine asks for knows no arcs.
+    NoArcs {
+        /// Line of the first arc.
+        line: u32,
+        /// The method.
+        method: Method,
     },
     /// An error: an arc that can't be walked.
     Arc {
@@ -39,7 +47,7 @@ impl Finding {
     pub fn is_error(&self) -> bool {
         match self {
             Self::Text(diagnostic) => diagnostic.severity() == Severity::Error,
-            Self::Limited { .. } => false,
+            Self::Limited { .. } | Self::NoArcs { .. } => false,
             Self::Arc { .. } => true,
         }
     }
@@ -48,7 +56,7 @@ impl Finding {
     pub const fn line(&self) -> u32 {
         match self {
             Self::Text(diagnostic) => diagnostic.line,
-            Self::Limited { line, .. } | Self::Arc { line, .. } => *line,
+            Self::Limited { line, .. } | Self::NoArcs { line, .. } | Self::Arc { line, .. } => *line,
         }
     }
 
@@ -56,7 +64,7 @@ impl Finding {
     pub const fn span(&self) -> (u32, u32) {
         match self {
             Self::Text(diagnostic) => (diagnostic.column, diagnostic.length),
-            Self::Limited { .. } | Self::Arc { .. } => (1, 0),
+            Self::Limited { .. } | Self::NoArcs { .. } | Self::Arc { .. } => (1, 0),
         }
     }
 
@@ -71,6 +79,7 @@ impl Finding {
                 let axis = limited.axis.letter();
                 write!(f, "program a lower F or raise {axis}.max_feed, if the machine allows it")
             }
+            Self::NoArcs { .. } => f.write_str("set method to one that knows arcs, or leave it"),
             Self::Arc { why: ArcRefusal::OutOfRange, .. } => {
                 f.write_str("split the arc, or move it nearer to the zero point")
             }
@@ -93,6 +102,9 @@ impl fmt::Display for Finding {
                 let (whole, part) = (um_per_min / 1_000, um_per_min % 1_000 / 100);
                 write!(f, "F is limited to {whole}.{part} mm/min by the {axis} axis in this direction")
             }
+            Self::NoArcs { method, .. } => {
+                write!(f, "method {} knows lines only: arcs are walked by minimum deviation", method.name())
+            }
             Self::Arc { why: ArcRefusal::OutOfRange, .. } => {
                 f.write_str("the arc leaves the range of 2.1 m between its ends")
             }
@@ -110,6 +122,8 @@ pub struct Compiler {
     builder: Builder,
     at: Point,
     ended: bool,
+    /// It was said that the method knows no arcs.
+    told: bool,
 }
 
 impl Compiler {
@@ -117,7 +131,7 @@ impl Compiler {
     pub fn new(settings: Settings, format: Format, machine: &Machine) -> Self {
         let builder = Builder::new(machine, settings.start);
         let at = settings.start;
-        Self { interpreter: Interpreter::new(settings, format), builder, at, ended: false }
+        Self { interpreter: Interpreter::new(settings, format), builder, at, ended: false, told: false }
     }
 
     /// Goes on under other settings and on another machine, with the tool at rest at the settings' `start`. What is
@@ -153,9 +167,14 @@ impl Compiler {
     pub fn line(&mut self, text: &[u8], emit: &mut impl FnMut(&Item, &[Block]), report: &mut impl FnMut(Finding)) {
         let (builder, at, ended) = (&mut self.builder, &mut self.at, &mut self.ended);
         let mut late = None;
+        let (told, mut no_arcs) = (&mut self.told, None);
         self.interpreter.line(
             text,
             &mut |item| {
+                if matches!(item.action, Action::Arc { .. }) && builder.arcs_fall_back() && !*told {
+                    *told = true;
+                    no_arcs = Some(Finding::NoArcs { line: item.line, method: builder.method() });
+                }
                 let found = compile(builder, &item, emit);
                 if let (Action::Line { end, .. } | Action::Arc { end, .. }, None | Some(Finding::Limited { .. })) =
                     (item.action, found)
@@ -168,9 +187,7 @@ impl Compiler {
             &mut |diagnostic| report(Finding::Text(diagnostic)),
         );
         *ended |= self.interpreter.is_ended();
-        if let Some(finding) = late {
-            report(finding);
-        }
+        late.into_iter().chain(no_arcs).for_each(report);
     }
 
     /// Ends the program: says what only the whole can be blamed for. The caller then adds the end block that

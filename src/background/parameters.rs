@@ -7,6 +7,7 @@ use core::fmt;
 
 use feature_editor::codes::{Number, Settings};
 use interp_core::config::{AxisConfig, Config, ConfigError, Machine};
+use interp_core::curve::method::Method;
 use interp_core::units::{Axis, Feedrate, Length, Point, PulseSize};
 
 /// How a parameter is written and held.
@@ -80,6 +81,7 @@ mod index {
     pub(super) const FEED_OVERRIDE: usize = 17;
     pub(super) const ARC_TOLERANCE: usize = 18;
     pub(super) const CORNER: usize = 19;
+    pub(super) const METHOD: usize = 20;
     pub(super) const TAPE_FEEDS: usize = 21;
     pub(super) const FRONT_POST: usize = 30;
     pub(super) const BLOCK_DELETE: usize = 31;
@@ -87,6 +89,13 @@ mod index {
     pub(super) const OPTIONAL_STOP: usize = 33;
     pub(super) const COUNT: usize = 34;
 }
+
+/// Methods that this build has, in the order of [`Method::ALL`].
+const METHODS: &[&str] = if cfg!(feature = "methods") {
+    &["minimum-deviation", "point-comparison", "dda", "rate-multiplier", "fraction", "time-division"]
+} else {
+    &["minimum-deviation"]
+};
 
 /// All parameters.
 pub static DEFINITIONS: [Definition; index::COUNT] = [
@@ -110,7 +119,7 @@ pub static DEFINITIONS: [Definition; index::COUNT] = [
     definition("feed_override", "%", number(1, 0, 200), "100", "part of the programmed feed"),
     definition("arc_tolerance_um", "um", number(1_000, 0, 100_000), "10", "how far the two radii of an arc may differ"),
     definition("corner_um", "um", number(1_000, 0, 1_000_000), "0", "how far a blend may leave a corner; 0 for none"),
-    definition("method", "", Kind::Choice(&["minimum-deviation"]), "minimum-deviation", "how steps follow a curve"),
+    definition("method", "", Kind::Choice(METHODS), "minimum-deviation", "how steps follow a curve"),
     definition("f1", "mm/min", FEED, "25", "feed of the tape code F1"),
     definition("f2", "mm/min", FEED, "50", "feed of the tape code F2"),
     definition("f3", "mm/min", FEED, "75", "feed of the tape code F3"),
@@ -132,7 +141,8 @@ enum Value {
     Pulse(PulseSize),
     Number(i64),
     Switch(bool),
-    Choice,
+    /// Which word of the list.
+    Choice(usize),
     Place(Point),
 }
 
@@ -222,10 +232,10 @@ impl Default for Parameters {
 impl Parameters {
     /// All defaults.
     pub fn new() -> Self {
-        let mut values = [Value::Choice; index::COUNT];
+        let mut values = [Value::Choice(0); index::COUNT];
         for (value, definition) in values.iter_mut().zip(&DEFINITIONS) {
             // a test reads every default
-            *value = read(definition, definition.default).unwrap_or(Value::Choice);
+            *value = read(definition, definition.default).unwrap_or(Value::Choice(0));
         }
         Self { values }
     }
@@ -270,7 +280,16 @@ impl Parameters {
     /// # Errors
     /// [`ConfigError`] where they contradict each other.
     pub fn machine(&self) -> Result<Machine, ConfigError> {
-        self.config().check()
+        let machine = self.config().check()?;
+        Ok(Machine { method: self.method(), ..machine })
+    }
+
+    /// How steps follow a curve.
+    pub fn method(&self) -> Method {
+        match self.values.get(index::METHOD) {
+            Some(Value::Choice(word)) => Method::ALL.get(*word).copied().unwrap_or_default(),
+            _ => Method::default(),
+        }
     }
 
     /// The machine as typed, unchecked.
@@ -377,8 +396,10 @@ impl fmt::Display for Shown {
                 decimal(f, number, scale)
             }
             Value::Switch(on) => write!(f, "{on}"),
-            // lists have one word yet, the default
-            Value::Choice => f.write_str(self.definition.default),
+            Value::Choice(word) => f.write_str(match self.definition.kind {
+                Kind::Choice(words) => words.get(word).copied().unwrap_or(self.definition.default),
+                Kind::Pulse | Kind::Number { .. } | Kind::Switch | Kind::Place => self.definition.default,
+            }),
             Value::Place(point) => {
                 decimal(f, point.x.nm().into(), 1_000_000)?;
                 f.write_str(",")?;
@@ -414,13 +435,7 @@ fn read(definition: &'static Definition, text: &str) -> Result<Value, ParameterE
             "false" => Ok(Value::Switch(false)),
             _ => Err(malformed),
         },
-        Kind::Choice(words) => {
-            if words.contains(&text) {
-                Ok(Value::Choice)
-            } else {
-                Err(malformed)
-            }
-        }
+        Kind::Choice(words) => words.iter().position(|word| *word == text).map(Value::Choice).ok_or(malformed),
         Kind::Place => {
             let (x, z) = text.split_once(',').ok_or(malformed)?;
             let length = |part: &str| -> Result<Length, ParameterError> {

@@ -5,6 +5,8 @@
 //! passes the next lattice line. Since the coordinate comes from the length itself and is not summed up, no error
 //! grows along the curve; at the end of a zone and of the curve whatever step is still owed is made.
 
+#[cfg(feature = "methods")]
+use super::classic::ClassicRunner;
 use crate::block::Curve;
 use crate::curve::arc::Arc;
 use crate::curve::arc_walker::ArcWalker;
@@ -30,7 +32,7 @@ pub(super) struct Sink<'s, O> {
 
 impl<O: Train> Sink<'_, O> {
     /// One step, at a clock or as soon after as the pins allow.
-    fn step(&mut self, clock: u32, step: Step) {
+    pub(super) fn step(&mut self, clock: u32, step: Step) {
         self.shaper.step(clock, step.x, step.z, self.out);
         self.position.x = self.position.x.wrapping_add(i32::from(step.x));
         self.position.z = self.position.z.wrapping_add(i32::from(step.z));
@@ -69,6 +71,9 @@ pub(super) enum Runner {
     Line(LineRunner),
     /// An arc.
     Arc(ArcRunner),
+    /// A line or an arc by a classic method.
+    #[cfg(feature = "methods")]
+    Classic(super::classic::ClassicRunner),
 }
 
 impl Runner {
@@ -79,6 +84,10 @@ impl Runner {
                 Self::Line(LineRunner { walker: line.walk(), steps: *steps, at: 0, next: PULSE })
             }
             Curve::Arc(arc) => Self::Arc(ArcRunner::new(arc, length)),
+            #[cfg(feature = "methods")]
+            Curve::ClassicLine(line, pulses, method) => Self::Classic(ClassicRunner::line(*line, *pulses, *method)),
+            #[cfg(feature = "methods")]
+            Curve::ClassicArc(arc, method) => Self::Classic(ClassicRunner::arc(arc, *method)),
         }
     }
 
@@ -87,6 +96,8 @@ impl Runner {
         match self {
             Self::Line(runner) => runner.advance(length, stretch, sink),
             Self::Arc(runner) => runner.advance(length, stretch, sink),
+            #[cfg(feature = "methods")]
+            Self::Classic(runner) => runner.advance(length, stretch, sink),
         }
     }
 
@@ -95,6 +106,8 @@ impl Runner {
         match self {
             Self::Line(runner) => rest(&mut runner.walker, clock, sink),
             Self::Arc(runner) => rest(&mut runner.walker, clock, sink),
+            #[cfg(feature = "methods")]
+            Self::Classic(runner) => runner.finish(clock, sink),
         }
     }
 }
@@ -309,7 +322,7 @@ impl ArcRunner {
 }
 
 /// `clocks * part / whole`, at most `clocks`.
-fn share(clocks: u32, part: u64, whole: u64) -> u32 {
+pub(super) fn share(clocks: u32, part: u64, whole: u64) -> u32 {
     let bits = 64_u32.wrapping_sub(whole.leading_zeros()).saturating_sub(48);
     let (part, whole) = (part.wrapping_shr(bits), whole.wrapping_shr(bits).max(1));
     let scaled = u64::from(clocks).wrapping_mul(part).checked_div(whole).unwrap_or(0);

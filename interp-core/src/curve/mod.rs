@@ -15,6 +15,7 @@ pub mod conic;
 pub mod dda;
 pub mod fraction;
 pub mod line;
+pub mod method;
 mod octants;
 pub mod point_comparison;
 pub mod prepare_arc;
