@@ -8,7 +8,7 @@
 //! s being the distance to the end. (Insert it: dw/ds = 2 sqrt(a^2 - (w/R)^2).) So the vector sum of both never
 //! passes the axis's acceleration.
 
-use crate::block::{Motion, Speed};
+use crate::block::{Curve, Motion, Speed};
 use crate::config::TICK_CLOCKS;
 use crate::curve::proportion::Proportion;
 use crate::math::{QUARTER_Q30, RADIAN_Q30, cosine_from_sine, root, sine, to_u32};
@@ -101,7 +101,7 @@ impl Motion {
     /// than a 64th of the acceleration at the largest speed.
     #[inline]
     fn bend(&self) -> Option<Bend> {
-        let arc = self.curve.round()?;
+        let Curve::Arc(arc) = &self.curve else { return None };
         let radius = arc.radius();
         let full = u64::from(self.accel).saturating_mul(radius);
         (full >> 6 < square(self.limit)).then_some(Bend { full, radius, angle: arc.timeline.angle })
@@ -110,10 +110,10 @@ impl Motion {
     /// The acceleration along the path where turning takes none, or next to none.
     #[inline]
     const fn straight(&self) -> u32 {
-        match self.curve.round() {
-            None => self.accel,
+        match self.curve {
+            Curve::Line(..) => self.accel,
             // on wide arcs the 8192th part that turning may take at most
-            Some(_) => self.accel.wrapping_sub(self.accel >> 12),
+            Curve::Arc(_) => self.accel.wrapping_sub(self.accel >> 12),
         }
     }
 

@@ -11,6 +11,7 @@ pub mod governor;
 pub mod math;
 pub mod ramp;
 pub mod ring;
+pub mod sampled;
 pub mod shaper;
 pub mod times;
 pub mod train;

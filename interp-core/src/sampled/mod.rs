@@ -1,0 +1,194 @@
+//! Time division: curves without a lattice walk, sampled into chords that are walked by minimum deviation.
+//!
+//! A [`Sampled`] curve gives its point for a parameter from 0 to 1; [`Chords`] divides it. A chord is as long as its
+//! distance from the curve allows: it is halved until the curve's points at its quarters lie within the tolerance, and the
+//! next one tries twice its length. It also stays below [`Sampled::longest`], a part of the curve that has no more than one
+//! bend to each side, so that no wave can hide between the points looked at. The points at the quarters bound the
+//! distance from above but for a tenth, which the tolerance keeps in reserve. State is bounded: a parameter and a length.
+//!
+//! The ends are exact: the first chord starts at parameter 0, the last ends at 1. That needs no end test. Where a curve
+//! is run by its advance alone, without knowing how long it is, [`end_test`] has those of the method's source.
+//!
+//! Everything is integers: points in nm with 12 fraction bits (finer than 1 nm), angles of 60 fraction bits. It runs in the
+//! background, like all preparation; what the foreground gets are lines.
+//!
+//! Source: the time-division interpolation article; the survey of the state of the art for the resolution.
+
+pub mod curves;
+pub mod end_test;
+pub mod nurbs;
+pub mod spline;
+
+use crate::math::{HALF_TURN_Q60, Wide, root_wide, scale, to_i64};
+use crate::units::{Length, Point};
+
+/// Fraction bits of a point's coordinates in nm.
+pub const FRACTION: u32 = 12;
+
+/// The whole of a curve as a parameter.
+pub const WHOLE: u64 = 1 << 32;
+
+/// A point of a curve: X and Z, nm with [`FRACTION`] fraction bits.
+pub type Place = (i64, i64);
+
+/// A curve whose points are known for a parameter of 0 to [`WHOLE`].
+pub trait Sampled {
+    /// The point at a parameter; past the ends, the ends.
+    fn at(&self, parameter: u64) -> Place;
+    /// Largest part of the parameter that one chord may span.
+    fn longest(&self) -> u64;
+}
+
+/// Why a curve is not sampled.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum CurveRefusal {
+    /// It has no extent: a half axis, wave length, parameter or sweep is zero or negative.
+    Degenerate,
+    /// Two neighbouring points are the same.
+    RepeatedPoint,
+    /// Fewer points than a curve of this kind needs, or more than fit.
+    Points,
+    /// A weight is no number, zero, negative or too large.
+    Weight,
+    /// The knots do not rise, or do not fit the number of points and the degree.
+    Knots,
+    /// A point is past ±2.1 m.
+    OutOfRange,
+}
+
+impl core::fmt::Display for CurveRefusal {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Degenerate => "the curve has no extent: give it a positive size and a way to go",
+            Self::RepeatedPoint => "two neighbouring points are the same: leave one out",
+            Self::Points => "the curve has too few points or too many",
+            Self::Weight => "a weight must be a positive number up to 65536",
+            Self::Knots => "the knots must not fall, and must be as many as points plus degree plus one",
+            Self::OutOfRange => "the curve leaves the range of 2.1 m",
+        })
+    }
+}
+
+/// Divides a curve into chords; gives the end of each.
+#[derive(Clone, Debug)]
+pub struct Chords<C> {
+    curve: C,
+    parameter: u64,
+    span: u64,
+    from: Place,
+    /// nm with [`FRACTION`] fraction bits.
+    tolerance: u64,
+    refused: bool,
+}
+
+impl<C: Sampled> Chords<C> {
+    /// Shortest part of the parameter that a chord spans, whatever the tolerance: it ends the halving.
+    pub const SHORTEST: u64 = 1 << 8;
+
+    /// Chords that leave the curve by at most `tolerance` nm (below 1 counts as 1).
+    pub fn new(curve: C, tolerance: u32) -> Self {
+        let from = curve.at(0);
+        let span = curve.longest().clamp(Self::SHORTEST, WHOLE);
+        let tolerance = u64::from(tolerance.max(1)) << FRACTION;
+        Self { curve, parameter: 0, span, from, tolerance: tolerance.wrapping_sub(tolerance / 10), refused: false }
+    }
+
+    /// Whether the chord to `end` is near enough: the curve at its quarters.
+    fn holds(&self, span: u64, to: Place) -> bool {
+        let (dx, dz) = (to.0.wrapping_sub(self.from.0), to.1.wrapping_sub(self.from.1));
+        let length = i128::from(distance(dx, dz));
+        (1..4_u64).all(|quarter| {
+            let at = self.curve.at(self.parameter.wrapping_add(span.wrapping_mul(quarter) >> 2));
+            let (px, pz) = (at.0.wrapping_sub(self.from.0), at.1.wrapping_sub(self.from.1));
+            let along = i128::from(px).times(i128::from(dx)).wrapping_add(i128::from(pz).times(i128::from(dz)));
+            // beyond its ends the chord is as far as they are
+            if length == 0 || along < 0 || along > length.times(length) {
+                let (qx, qz) = (at.0.wrapping_sub(to.0), at.1.wrapping_sub(to.1));
+                return distance(px, pz).min(distance(qx, qz)) <= self.tolerance;
+            }
+            let cross = i128::from(px).times(i128::from(dz)).wrapping_sub(i128::from(pz).times(i128::from(dx)));
+            cross.unsigned_abs() <= u128::from(self.tolerance).saturating_mul(length.unsigned_abs())
+        })
+    }
+}
+
+/// Length of a vector.
+fn distance(x: i64, z: i64) -> u64 {
+    // coordinates are below 2^45
+    let (x, z) = (i128::from(x), i128::from(z));
+    root_wide(x.times(x).wrapping_add(z.times(z)).unsigned_abs())
+}
+
+/// A point in whole nanometres; `None` past ±2.1 m.
+fn rounded((x, z): Place) -> Option<Point> {
+    let nm = |v: i64| Length::from_nm(v.wrapping_add(1 << (FRACTION - 1)) >> FRACTION);
+    Some(Point { x: nm(x)?, z: nm(z)? })
+}
+
+impl<C: Sampled> Iterator for Chords<C> {
+    type Item = Result<Point, CurveRefusal>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.refused || self.parameter >= WHOLE {
+            return None;
+        }
+        let left = WHOLE.wrapping_sub(self.parameter);
+        let mut span = self.span.min(left);
+        let mut to = self.curve.at(self.parameter.wrapping_add(span));
+        while span > Self::SHORTEST && !self.holds(span, to) {
+            span >>= 1;
+            to = self.curve.at(self.parameter.wrapping_add(span));
+        }
+        self.parameter = self.parameter.wrapping_add(span);
+        self.span = span.wrapping_mul(2).min(self.curve.longest()).max(Self::SHORTEST);
+        self.from = to;
+        let point = rounded(to).ok_or(CurveRefusal::OutOfRange);
+        self.refused = point.is_err();
+        Some(point)
+    }
+}
+
+/// Nanometres as a coordinate.
+const fn coordinate(nm: i64) -> i64 {
+    nm.wrapping_shl(FRACTION)
+}
+
+/// Sine and cosine of any angle (60 fraction bits), with 60 fraction bits. Error below 2^-54.
+///
+/// Taylor's series up to the 19th and 20th power on an eighth of a turn to either side, whose remainder is below 2^-60.
+pub fn sine_cosine(angle: i128) -> (i64, i64) {
+    let quarter = i128::from(HALF_TURN_Q60 >> 1);
+    let quarters = angle.wrapping_add(quarter >> 1).quotient(quarter).unwrap_or(0);
+    let x = angle.wrapping_sub(quarters.times(quarter));
+    let times = |a: i128, b: i128| a.times(b) >> 60;
+    let square = times(x, x);
+    // 1 - s/(n(n-1)) (1 - s/((n-2)(n-3)) (...))
+    let nested = |mut power: i128| {
+        let mut sum = ONE;
+        while power > 1 {
+            let divisor = power.wrapping_mul(power.wrapping_sub(1));
+            sum = ONE.wrapping_sub(times(square, sum).quotient(divisor).unwrap_or(0));
+            power = power.wrapping_sub(2);
+        }
+        sum
+    };
+    let (s, c) = (times(x, nested(19)), nested(20));
+    let (s, c) = (to_i64(s), to_i64(c));
+    match quarters & 3 {
+        0 => (s, c),
+        1 => (c, s.wrapping_neg()),
+        2 => (s.wrapping_neg(), c.wrapping_neg()),
+        _ => (c.wrapping_neg(), s),
+    }
+}
+
+/// One with 60 fraction bits.
+const ONE: i128 = 1 << 60;
+
+/// `from + (to - from) * parameter`, for angles and coordinates.
+fn between(from: i128, to: i128, parameter: u64) -> i128 {
+    from.wrapping_add(scale(to.wrapping_sub(from), i128::from(parameter.min(WHOLE)), i128::from(WHOLE)))
+}
+
+#[cfg(test)]
+mod tests;
