@@ -25,6 +25,8 @@ enum Command {
     Serve(Serve),
     /// Run the programs that come with the lathe, and show them on one page.
     Examples(Examples),
+    /// Draw what each pulse method does on a line and on an arc: out/methods-line and out/methods-arc, SVG and PNG.
+    CompareMethods,
     /// List all parameters with units, ranges and defaults.
     Parameters,
 }
@@ -147,6 +149,15 @@ fn main() -> ExitCode {
             set: options.set,
         })),
         Command::Examples(options) => ExitCode::from(gallery::write(&options.page)),
+        Command::CompareMethods => {
+            match virtual_lathe::compare_methods::compare(std::path::Path::new("out"), &mut std::io::stdout().lock()) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(error) => {
+                    let _ = writeln!(std::io::stderr(), "error: {error}");
+                    ExitCode::FAILURE
+                }
+            }
+        }
         Command::Parameters => {
             // a reader that has gone is no failure
             let _ = std::io::stdout().lock().write_all(virtual_lathe::report::parameters().as_bytes());

@@ -14,6 +14,7 @@ mod film;
 mod inset;
 mod layout;
 mod main_view;
+mod methods;
 mod number;
 mod page;
 mod pen;
@@ -26,6 +27,7 @@ mod view;
 
 pub use chart::{Chart, Look, Series, Strip};
 pub use film::{Film, Form};
+pub use methods::{Panel, methods};
 pub use raster::{PictureError, png};
 pub use thin::Thinner;
 
