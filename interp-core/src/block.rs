@@ -46,30 +46,14 @@ pub enum Path {
 pub enum Curve {
     /// Straight; from length to steps of the major axis, 16 fraction bits.
     Line(Line, Proportion),
-    /// Round.
+    /// Round, by the method that the arc names.
     Arc(Arc),
     /// Straight by a classic method; from length to pulses of the major axis, 16 fraction bits.
     #[cfg(feature = "methods")]
     ClassicLine(Line, Proportion, Method),
-    /// Round by a classic method.
-    #[cfg(feature = "methods")]
-    ClassicArc(Arc, Method),
 }
 
 impl Curve {
-    /// The arc, where it is one.
-    #[inline]
-    pub const fn round(&self) -> Option<&Arc> {
-        match self {
-            Self::Line(..) => None,
-            Self::Arc(arc) => Some(arc),
-            #[cfg(feature = "methods")]
-            Self::ClassicLine(..) => None,
-            #[cfg(feature = "methods")]
-            Self::ClassicArc(arc, _) => Some(arc),
-        }
-    }
-
     /// The end, X then Z, pulses from the start.
     pub const fn end(&self) -> (i32, i32) {
         match self {
@@ -77,8 +61,6 @@ impl Curve {
             Self::Arc(arc) => arc.end(),
             #[cfg(feature = "methods")]
             Self::ClassicLine(line, ..) => line.end(),
-            #[cfg(feature = "methods")]
-            Self::ClassicArc(arc, _) => arc.end(),
         }
     }
 }
@@ -335,13 +317,7 @@ impl Builder {
                 let square = u128::from(accel).wrapping_mul(u128::from(arc.radius()));
                 let by_bend = to_u32(root_wide(square.wrapping_mul(CURVATURE_SHARE) / 1000));
                 let run = Run { length: arc.length().max(1), entry, exit, by_axis, by_bend, accel };
-                #[cfg(feature = "methods")]
-                let curve = match self.machine.method {
-                    Method::MinimumDeviation | Method::RateMultiplier | Method::Fraction => Curve::Arc(arc),
-                    method => Curve::ClassicArc(arc, method),
-                };
-                #[cfg(not(feature = "methods"))]
-                let curve = Curve::Arc(arc);
+                let curve = Curve::Arc(Arc { method: self.machine.method, ..arc });
                 self.finish(curve, &run, pace, built);
             }
         }

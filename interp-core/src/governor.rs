@@ -112,6 +112,8 @@ impl Motion {
     const fn straight(&self) -> u32 {
         match self.curve {
             Curve::Line(..) => self.accel,
+            #[cfg(feature = "methods")]
+            Curve::ClassicLine(..) => self.accel,
             // on wide arcs the 8192th part that turning may take at most
             Curve::Arc(_) => self.accel.wrapping_sub(self.accel >> 12),
         }

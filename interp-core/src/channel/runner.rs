@@ -6,11 +6,13 @@
 //! grows along the curve; at the end of a zone and of the curve whatever step is still owed is made.
 
 #[cfg(feature = "methods")]
-use super::classic::ClassicRunner;
+use super::classic::{ChordRunner, ClassicRunner};
 use crate::block::Curve;
 use crate::curve::arc::Arc;
 use crate::curve::arc_walker::ArcWalker;
 use crate::curve::line::LineWalker;
+#[cfg(feature = "methods")]
+use crate::curve::method::Method;
 use crate::curve::proportion::Proportion;
 use crate::curve::strides::Strides;
 use crate::curve::{Step, Walker};
@@ -65,7 +67,10 @@ fn further(next: i64, count: u32) -> i64 {
 
 /// Runs a curve from its start to its end.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "one exists a channel, and there is no allocation")]
+#[cfg_attr(
+    not(feature = "methods"),
+    expect(clippy::large_enum_variant, reason = "one exists a channel, and there is no allocation")
+)]
 pub(super) enum Runner {
     /// A line.
     Line(LineRunner),
@@ -83,11 +88,19 @@ impl Runner {
             Curve::Line(line, steps) => {
                 Self::Line(LineRunner { walker: line.walk(), steps: *steps, at: 0, next: PULSE })
             }
+            #[cfg(feature = "methods")]
+            Curve::Arc(arc) => match arc.method {
+                Method::MinimumDeviation | Method::RateMultiplier | Method::Fraction => {
+                    Self::Arc(ArcRunner::new(arc, length))
+                }
+                Method::PointComparison => Self::Classic(ClassicRunner::compared(arc)),
+                Method::Dda => Self::Classic(ClassicRunner::integrated(arc)),
+                Method::TimeDivision => Self::Classic(ClassicRunner::Chords(ChordRunner::new(arc))),
+            },
+            #[cfg(not(feature = "methods"))]
             Curve::Arc(arc) => Self::Arc(ArcRunner::new(arc, length)),
             #[cfg(feature = "methods")]
             Curve::ClassicLine(line, pulses, method) => Self::Classic(ClassicRunner::line(*line, *pulses, *method)),
-            #[cfg(feature = "methods")]
-            Curve::ClassicArc(arc, method) => Self::Classic(ClassicRunner::arc(arc, *method)),
         }
     }
 

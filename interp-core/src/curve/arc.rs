@@ -19,6 +19,7 @@
 //! An arc turns by at most a whole turn and so visits at most nine octants. Two neighbouring octants with one major
 //! axis are a *zone*.
 
+use super::method::Method;
 use super::proportion::Proportion;
 use crate::units::{Axis, Sense};
 
@@ -46,6 +47,8 @@ pub struct Arc {
     pub(crate) pieces: u8,
     /// Sense of travel.
     pub(crate) sense: Sense,
+    /// How it is walked; methods that know no arcs leave that to minimum deviation.
+    pub(crate) method: Method,
     /// Where the tool is on the timeline.
     pub(crate) timeline: Timeline,
     /// The end, pulses.

@@ -6,6 +6,7 @@
 //! ellipse is a circle on a lattice with other pulse sizes. Octants are numbered as in [`super::arc`].
 
 use super::arc::{Arc, MAX_PIECES, Timeline};
+use super::method::Method;
 use super::prepare_arc::Reach;
 use crate::math::{Wide, root_wide, scale, to_i32, to_i64};
 use crate::units::{Axis, Sense};
@@ -181,6 +182,7 @@ impl Octants {
             octant: first,
             pieces: turns.wrapping_add(1),
             sense: self.sense,
+            method: Method::MinimumDeviation,
             timeline,
             end: self.end,
         };
