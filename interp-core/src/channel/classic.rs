@@ -181,6 +181,9 @@ impl PulseRunner {
     }
 
     fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl Train>) {
+        if matches!(&self.pulses, Pulses::Arc(round) if length >= round.length) {
+            return self.last(stretch, sink);
+        }
         let to = self.pulses.at(length);
         let whole = to.wrapping_sub(self.at).max(0).unsigned_abs();
         while self.made <= to {
@@ -205,6 +208,23 @@ impl PulseRunner {
     }
 }
 
+impl PulseRunner {
+    /// Makes all steps that are left of an arc, evenly: on its last stretch a pulse more or less than the timeline's is
+    /// spread over all.
+    fn last(&mut self, stretch: Stretch, sink: &mut Sink<'_, impl Train>) {
+        let mut ahead = self.clone();
+        let mut left = 1_u64;
+        while ahead.next().is_some() {
+            left = left.wrapping_add(1);
+        }
+        let mut part = 0;
+        while let Some(step) = self.next() {
+            part = u64::wrapping_add(part, 1);
+            sink.step(stretch.from.wrapping_add(share(stretch.clocks, part, left)), step);
+        }
+    }
+}
+
 /// How far a walker may be off its timeline where it changes the quadrant.
 const MOST_OFF: i64 = PULSE * 4;
 
@@ -222,6 +242,8 @@ struct Round {
     cut: u32,
     /// Centre, X and Z, pulses from the start, 16 fraction bits.
     centre: [i64; 2],
+    /// Of the whole arc.
+    length: u64,
 }
 
 impl Round {
@@ -247,6 +269,7 @@ impl Round {
             radius: radius.map(|radius| radius.wrapping_shr(cut).cast_signed()),
             cut,
             centre: timeline.centre,
+            length: timeline.length,
         }
     }
 

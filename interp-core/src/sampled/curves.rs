@@ -128,7 +128,8 @@ impl Sampled for Hyperbola {
         // u = a sqrt(b^2 + v^2) / b; with 12 fraction bits in v and in b
         let b = self.half.1 << super::FRACTION;
         let root = i128::from(root_wide(b.times(b).wrapping_add(v.times(v)).unsigned_abs()));
-        self.frame.place(scale(root, self.half.0, self.half.1), v)
+        // past the range the place is refused
+        self.frame.place(scale(root, self.half.0, self.half.1).min(1 << 50), v)
     }
 
     fn longest(&self) -> u64 {
