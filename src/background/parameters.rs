@@ -541,13 +541,26 @@ mod tests {
             ("z.max_accel", "fast", "z.max_accel is a number of mm/s2, such as 500"),
             ("feed_override", "201", "feed_override goes from 0 to 200 %"),
             ("front_post", "yes", "front_post is true or false"),
-            ("method", "dda", "method is one of minimum-deviation"),
+            ("method", "spiral", &std::format!("method is one of {}", METHODS.join(" "))),
             ("start", "1", "start is X and Z in mm with a comma between, such as 25,100"),
             ("start", "1,3000", "start goes from -2100 to 2100 mm"),
         ] {
             let before = parameters.values;
             assert_eq!(parameters.set(name, text).unwrap_err().to_string(), message);
             assert_eq!(parameters.values, before);
+        }
+    }
+
+    #[test]
+    fn methods_are_named_in_their_order_and_read_back() {
+        assert!(METHODS.iter().zip(Method::ALL).all(|(name, method)| *name == method.name()));
+        let mut parameters = Parameters::new();
+        assert_eq!(parameters.method(), Method::MinimumDeviation);
+        for (name, method) in METHODS.iter().zip(Method::ALL) {
+            parameters.set("method", name).unwrap();
+            assert_eq!(parameters.machine().unwrap().method, method);
+            let shown = parameters.iter().find(|(definition, _)| definition.name == "method");
+            assert_eq!(shown.unwrap().1.to_string(), *name);
         }
     }
 

@@ -71,24 +71,23 @@ fn draw(pen: &mut Pen, panel: &Panel, [left, top]: Point) {
     pen.text("worst", [left + FIELD[0], top + 18.0], 12.0, Anchor::End, GREY, &label);
     let top = top + 28.0;
     let curve = polyline(&panel.curve);
-    let bound = |pick: fn(f64, f64) -> f64, axis: usize, start: f64| {
-        panel.steps.iter().chain(&curve).fold(start, |found, at| pick(found, at[axis]))
+    // the smallest or largest [z, x] of all points
+    let bound = |pick: fn(f64, f64) -> f64, start: f64| {
+        let join = |[z, x]: [f64; 2], at: &[f64; 2]| [pick(z, at[0]), pick(x, at[1])];
+        panel.steps.iter().chain(&curve).fold([start; 2], join)
     };
-    let (low, high) = (
-        [bound(f64::min, 0, f64::MAX).floor() - 1.0, bound(f64::min, 1, f64::MAX).floor() - 1.0],
-        [bound(f64::max, 0, f64::MIN).ceil() + 1.0, bound(f64::max, 1, f64::MIN).ceil() + 1.0],
-    );
+    let low = bound(f64::min, f64::MAX).map(|least| least.floor() - 1.0);
+    let high = bound(f64::max, f64::MIN).map(|most| most.ceil() + 1.0);
     let scale = (FIELD[0] / (high[0] - low[0])).min(FIELD[1] / (high[1] - low[1]));
     let inset = [(FIELD[0] - scale * (high[0] - low[0])) / 2.0, (FIELD[1] - scale * (high[1] - low[1])) / 2.0];
     let view = |at: [f64; 2]| [left + inset[0] + (at[0] - low[0]) * scale, top + inset[1] + (high[1] - at[1]) * scale];
     pen.open("lattice", Stroke::solid(GRID, 0.6));
-    let lines = |axis: usize| {
-        std::iter::successors(Some(low[axis]), |at| Some(at + 1.0)).take_while(move |at| *at <= high[axis])
-    };
-    for z in lines(0) {
+    let lines =
+        |from: f64, to: f64| std::iter::successors(Some(from), |at| Some(at + 1.0)).take_while(move |at| *at <= to);
+    for z in lines(low[0], high[0]) {
         pen.line(view([z, low[1]]), view([z, high[1]]));
     }
-    for x in lines(1) {
+    for x in lines(low[1], high[1]) {
         pen.line(view([low[0], x]), view([high[0], x]));
     }
     pen.close();
