@@ -58,6 +58,7 @@ fn round(radius: i32, starts: &[(i32, i32)]) -> f64 {
             while let Some(step) = walk.next_step() {
                 at = (at.0 + i32::from(step.x), at.1 + i32::from(step.z));
                 pulses += 1;
+                assert!(pulses <= 8 * radius, "radius {radius} {sense:?} ends");
                 assert_eq!(step.x.unsigned_abs() + step.z.unsigned_abs(), 1, "one axis at a time");
                 worst = worst.max((f64::from(at.0).hypot(f64::from(at.1)) - f64::from(radius)).abs());
             }
@@ -88,6 +89,7 @@ fn every_arc_of_a_small_circle_ends_where_it_must_and_leads_back() {
             while let Some(step) = walk.next_step() {
                 let (x, z) = points[points.len() - 1];
                 points.push((x + i32::from(step.x), z + i32::from(step.z)));
+                assert!(points.len() <= 8 * 13, "it ends");
             }
             for &from in &points {
                 let start = f64::from(from.0).hypot(f64::from(from.1));
@@ -101,8 +103,8 @@ fn every_arc_of_a_small_circle_ends_where_it_must_and_leads_back() {
                     while let Some(step) = walk.next_step() {
                         at = (at.0 + i32::from(step.x), at.1 + i32::from(step.z));
                         steps += 1;
-                        check(at);
                         assert!(steps <= 8 * radius + 8, "{from:?} to {to:?} {sense:?}");
+                        check(at);
                     }
                     assert_eq!(at, to, "from {from:?} {sense:?}");
                     let mut back = walk.reversed();
