@@ -11,7 +11,7 @@
 //! keep `x^2 + z^2 - x z / 2R` (Beeler, Gosper, Schroeppel, HAKMEM item 149, 1972). The registers are signed, so that what
 //! an axis owes when it turns round is taken back, and overflow at half their size. That is twice the largest gradient
 //! of the curve, so that no axis makes a pulse in every iteration; with once, circles below 6 pulses would be off by 1.5. On a lattice with different pulse sizes the integrands are the gradient of the conic of [`Arc`]. The end is
-//! met exactly: see [`super::around`]. Error: at most 1 pulse; the tests look at every circle up to
+//! met exactly: see `around.rs`. Error: at most 1 pulse; the tests look at every circle up to
 //! 400 pulses.
 //!
 //! Source: handbooks of punched-tape control (digital integration).
