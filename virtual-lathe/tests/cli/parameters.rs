@@ -36,7 +36,7 @@ fn malformed_parameters_are_refused() {
         ("x.pulse_nm=", "15875/8"),
         ("z.max_accel=fast", "a number of mm/s2"),
         ("front_post=yes", "true or false"),
-        ("method=dda", "one of minimum-deviation"),
+        ("method=spiral", "one of minimum-deviation"),
         ("start=1", "with a comma between"),
         ("start=1,2,3", "with a comma between"),
     ] {
