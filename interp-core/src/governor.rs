@@ -11,7 +11,7 @@
 use crate::block::{Curve, Motion, Speed};
 use crate::config::TICK_CLOCKS;
 use crate::curve::proportion::Proportion;
-use crate::math::{QUARTER_Q30, RADIAN_Q30, cosine_from_sine, root, sine, to_u32};
+use crate::math::{QUARTER_Q30, RADIAN_Q30, cosine_from_sine, divided, root, sine, to_u32};
 
 /// Clocks of a tick.
 const TICK: u64 = TICK_CLOCKS as u64;
@@ -242,21 +242,14 @@ const fn covered(from: Speed, to: Speed, clocks: u32) -> u64 {
 const fn ratio_q30(part: u64, whole: u64) -> i64 {
     let bits = 64_u32.wrapping_sub(whole.leading_zeros());
     let cut = bits.saturating_sub(22);
-    let (mut rest, whole) = (to_u32(part.wrapping_shr(cut)), to_u32(whole.wrapping_shr(cut)));
+    let (rest, whole) = (to_u32(part.wrapping_shr(cut)), to_u32(whole.wrapping_shr(cut)));
     if rest >= whole {
         return RADIAN_Q30;
     }
-    let mut ratio = 0_u32;
-    let mut digit = 0;
-    while digit < 3 {
-        let dividend = rest << 10;
-        let quotient = match dividend.checked_div(whole) {
-            Some(quotient) => quotient,
-            None => 0,
-        };
-        rest = dividend.wrapping_sub(quotient.wrapping_mul(whole));
-        ratio = ratio << 10 | quotient;
-        digit = 1_u32.wrapping_add(digit);
-    }
+    // whole is below 2^22, so is every remainder, and ten bits more fit
+    let (high, rest) = divided(rest << 10, whole);
+    let (middle, rest) = divided(rest << 10, whole);
+    let (low, _) = divided(rest << 10, whole);
+    let ratio = high << 20 | middle << 10 | low;
     ratio as i64
 }

@@ -150,6 +150,15 @@ pub const fn scale(value: i128, numerator: i128, denominator: i128) -> i128 {
     }
 }
 
+/// Quotient and remainder; the divisor is not zero.
+#[inline]
+pub(crate) const fn divided(dividend: u32, divisor: u32) -> (u32, u32) {
+    match dividend.checked_div(divisor) {
+        Some(quotient) => (quotient, dividend.wrapping_sub(quotient.wrapping_mul(divisor))),
+        None => (u32::MAX, 0),
+    }
+}
+
 /// Saturating conversion.
 pub const fn to_i64(value: i128) -> i64 {
     #[expect(clippy::cast_possible_truncation, reason = "clamped to the range")]

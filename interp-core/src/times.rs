@@ -1,6 +1,6 @@
 //! Times inside a tick at which an evenly moving coordinate passes lattice lines.
 
-use crate::math::to_u32;
+use crate::math::{divided, to_u32};
 
 /// Fraction bits of a time. A tick has less than 2^14 clocks, so a time fits 32 bits, and adding the rounding error
 /// of a spacing for every step of a tick stays far below a clock.
@@ -84,14 +84,5 @@ impl Times {
         let clock = self.time >> FRACTION;
         self.time = self.time.wrapping_add(self.spacing);
         clock
-    }
-}
-
-/// Quotient and remainder; the divisor is not zero.
-#[inline]
-const fn divided(dividend: u32, divisor: u32) -> (u32, u32) {
-    match dividend.checked_div(divisor) {
-        Some(quotient) => (quotient, dividend.wrapping_sub(quotient.wrapping_mul(divisor))),
-        None => (u32::MAX, 0),
     }
 }

@@ -9,7 +9,7 @@
 use super::classic::{ChordRunner, ClassicRunner};
 use crate::block::Curve;
 use crate::curve::arc::Arc;
-use crate::curve::arc_walker::ArcWalker;
+use crate::curve::arc_walker::{ArcWalker, Word};
 use crate::curve::line::LineWalker;
 #[cfg(feature = "methods")]
 use crate::curve::method::Method;
@@ -291,21 +291,23 @@ impl ArcRunner {
         if due == 0 {
             return 0;
         }
+        if self.walker.is_narrow() {
+            self.row_in::<i32>(due, times, sink)
+        } else {
+            self.row_in::<i64>(due, times, sink)
+        }
+    }
+
+    /// The same with the recurrence in words of one size.
+    #[inline(always)]
+    fn row_in<W: Word>(&mut self, due: u32, times: &mut Times, sink: &mut Sink<'_, impl Train>) -> u32 {
         let strides = self.walker.strides();
         let mut steps = 0;
-        if self.walker.is_narrow() {
-            self.walker.row::<i32>(|row| {
-                let made = sink.row(times, due, &strides, || row.turns());
-                steps = made.steps;
-                (made.steps, made.diagonals)
-            });
-        } else {
-            self.walker.row::<i64>(|row| {
-                let made = sink.row(times, due, &strides, || row.turns());
-                steps = made.steps;
-                (made.steps, made.diagonals)
-            });
-        }
+        self.walker.row::<W>(|row| {
+            let made = sink.row(times, due, &strides, || row.turns());
+            steps = made.steps;
+            (made.steps, made.diagonals)
+        });
         steps
     }
 

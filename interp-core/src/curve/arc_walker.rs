@@ -247,18 +247,14 @@ impl ArcWalker {
     /// One step inside the octant; the caller knows that there is one.
     #[inline]
     fn octant_step(&mut self) -> Step {
-        self.done = self.done.wrapping_add(1);
-        let step = if self.decision >= 0 && self.minors != 0 {
-            self.minors = self.minors.wrapping_sub(1);
-            self.decision = self.decision.wrapping_add(self.minor_rise);
-            self.minor_rise = self.minor_rise.wrapping_add(self.minor_curve);
-            self.strides.step(true)
-        } else {
-            self.strides.step(false)
-        };
-        self.decision = self.decision.wrapping_add(self.major_rise);
-        self.major_rise = self.major_rise.wrapping_add(self.major_curve);
-        self.shift(step)
+        let free = self.minors != 0;
+        let mut diagonal = false;
+        self.row::<i64>(|row| {
+            diagonal = row.decision.is_reached() && free;
+            row.step(diagonal);
+            (1, u32::from(diagonal))
+        });
+        self.strides.step(diagonal)
     }
 
     /// Steps that can be made in a row: those of the octant, as long as the minor axis has lines left to step to.
@@ -394,13 +390,19 @@ impl<W: Word> ArcRow<W> {
     #[inline(always)]
     pub(crate) fn turns(&mut self) -> bool {
         let turns = self.decision.is_reached();
-        if turns {
+        self.step(turns);
+        turns
+    }
+
+    /// Makes a step, diagonal or not.
+    #[inline(always)]
+    fn step(&mut self, diagonal: bool) {
+        if diagonal {
             self.decision = self.decision.plus(self.minor_rise);
             self.minor_rise = self.minor_rise.plus(self.minor_curve);
         }
         self.decision = self.decision.plus(self.major_rise);
         self.major_rise = self.major_rise.plus(self.major_curve);
-        turns
     }
 }
 
@@ -412,9 +414,7 @@ impl Walker for ArcWalker {
                 return Some(step);
             }
             if self.done < self.steps {
-                let step = self.octant_step();
-                self.target = (self.x, self.z);
-                return Some(step);
+                return Some(self.octant_step());
             }
             if self.piece.wrapping_add(1) >= self.arc.pieces {
                 return None;
