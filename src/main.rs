@@ -15,7 +15,7 @@ fn main() {}
 /// | prio | task          | trigger                         | shared | does                                        |
 /// |------|---------------|---------------------------------|--------|---------------------------------------------|
 /// | 5    | `emergency`   | EXTI15_10                       | none   | drivers off, spindle off, train stopped     |
-/// | 4    | `pulse`       | TIM5                            | none   | plays one event of the train                |
+/// | 4    | `pulse`       | TIM5                            | none   | plays an event or a pulse of the train      |
 /// | 3    | `interpolate` | I2C3_ER, pended by `pulse`      | none   | makes the tick after the one being played   |
 /// | 2    | `receive`     | USART2                          | none   | bytes and real-time commands into queues    |
 /// | 1    | `edit`        | I2C3_EV, pended by both above   | none   | the link: replies, compiles, fills the queue |
@@ -42,7 +42,8 @@ mod app {
     use stm32f4xx_hal::pac::Interrupt;
 
     use crate::board::{
-        self, Bench, Board, Contact, Drives, EmergencyInput, Receiver, Sender, StepPort, StepTimer, Watchdog,
+        self, Bench, Board, Contact, Drives, EmergencyInput, Fall, Receiver, Sender, StepPort, StepTimer, Watchdog,
+        Width,
     };
 
     /// Bytes on their way to the link: what a sender may have under way.
@@ -63,6 +64,7 @@ mod app {
         player: Player<'static>,
         timer: StepTimer,
         port: StepPort,
+        fall: Fall,
     }
 
     #[shared]
@@ -75,6 +77,7 @@ mod app {
         steps: Steps,
         foreground: Foreground<'static>,
         train: Writer<'static>,
+        width: Width,
         contact: Contact,
         drives: Drives,
         watchdog: Watchdog,
@@ -124,9 +127,10 @@ mod app {
             Local {
                 emergency: have.emergency,
                 switch: drives,
-                steps: Steps { player, timer, port: have.port },
+                steps: Steps { player, timer, port: have.port, fall: have.fall },
                 foreground,
                 train,
+                width: have.width,
                 contact: have.contact,
                 drives,
                 watchdog: have.watchdog,
@@ -152,23 +156,28 @@ mod app {
         cx.local.emergency.acknowledge();
     }
 
-    /// Plays one event of the train.
+    /// Plays an event of the train, or a pulse that falls by itself.
     #[task(binds = TIM5, priority = 4, local = [steps])]
     fn pulse(cx: pulse::Context) {
-        let Steps { player, timer, port } = cx.local.steps;
+        let Steps { player, timer, port, fall } = cx.local.steps;
         timer.acknowledge();
-        let event = player.next_or_idle(|| rtic::pend(Interrupt::I2C3_ER));
-        port.write(event);
-        if timer.load(event.interval()) {
+        let play = player.next_or_idle(|| rtic::pend(Interrupt::I2C3_ER));
+        port.write(play);
+        if play.falls() {
+            fall.start();
+        }
+        if timer.load(play.clocks()) {
             LATE.store(LATE.load(Relaxed).saturating_add(1), Relaxed);
         }
     }
 
     /// Makes the tick after the one being played.
-    #[task(binds = I2C3_ER, priority = 3, local = [foreground, train, contact, drives, watchdog, heartbeat, bench])]
+    #[task(binds = I2C3_ER, priority = 3, local = [foreground, train, width, contact, drives, watchdog, heartbeat, bench])]
     fn interpolate(cx: interpolate::Context) {
-        let interpolate::LocalResources { foreground, train, contact, drives, watchdog, heartbeat, bench, .. } =
-            cx.local;
+        let interpolate::LocalResources {
+            foreground, train, width, contact, drives, watchdog, heartbeat, bench, ..
+        } = cx.local;
+        width.set(foreground.pulse_width()); // of the tick that is being played
         let faults = Faults { underruns: train.underruns(), overruns: train.overruns(), late: LATE.load(Relaxed) };
         foreground.watch(faults, STRUCK.swap(false, Relaxed) || contact.is_open());
         bench.due(foreground.state(), &mut |command| foreground.obey(command));

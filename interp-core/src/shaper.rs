@@ -149,6 +149,11 @@ impl Shaper {
         self.quiet = new.quiet;
     }
 
+    /// Clocks that the pins stay high in a row.
+    pub const fn row_width(&self) -> u32 {
+        larger(self.x.width, self.event_min).cast_unsigned()
+    }
+
     /// How far the train runs past the present tick, clocks.
     pub const fn ahead(&self) -> i32 {
         self.began.wrapping_sub(BORDER)
@@ -175,29 +180,32 @@ impl Shaper {
             self.face(strides, times.clock(), out);
         }
         let Some(row) = self.row(times, count, strides, out) else { return made };
-        let low = u32::from(self.levels.bits()) << 16;
+        let low = self.levels;
         let [straight, diagonal] = strides.raised;
-        let up = |raised: Levels| Event::from_word(low | u32::from(raised.bits()) << 16 | row.width);
+        let up = |raised: Levels| u32::from(low.bits() | raised.bits()) << 16;
         let (straight_up, diagonal_up) = (up(straight), up(diagonal));
-        // when the pins fell last, and when the last diagonal step came
-        let mut fell = self.began.cast_unsigned();
-        let (mut at, mut diagonal_at) = (0, 0);
         let (mut time, spacing) = (times.time, times.spacing);
-        out.put_pairs(row.count, || {
-            at = time >> FRACTION;
+        let mut at = time >> FRACTION;
+        // when the last diagonal step came
+        let mut diagonal_at = 0;
+        out.put(Event::new(low, at.wrapping_sub(self.began.cast_unsigned())));
+        let mut next = at;
+        out.put_row(row.count, row.width, low, || {
+            at = next;
             time = time.wrapping_add(spacing);
-            let before = Event::from_word(low | at.wrapping_sub(fell));
-            fell = at.wrapping_add(row.width);
-            let event = if turns() {
+            next = time >> FRACTION;
+            let raised = if turns() {
                 diagonal_at = at;
                 made.diagonals = made.diagonals.wrapping_add(1);
                 diagonal_up
             } else {
                 straight_up
             };
-            [before, event]
+            // the last one's clocks may be anything; one instruction joins both halves
+            Event::from_word(raised & 0xFFFF_0000 | next.wrapping_sub(at) & 0xFFFF)
         });
         times.time = time;
+        let fell = at.wrapping_add(row.width);
         self.began = fell.cast_signed();
         made.steps = row.count;
         let width = row.width.cast_signed();
@@ -244,7 +252,7 @@ impl Shaper {
         self.fall_until(first, out);
         let ready = self.x.ready.max(self.z.ready).max(self.began.wrapping_add(self.event_min));
         let low = self.x.fall == NEVER && self.z.fall == NEVER;
-        let width = self.x.width.max(self.event_min);
+        let width = self.row_width().cast_signed();
         let last = BORDER.wrapping_sub(self.event_min).wrapping_sub(width);
         if !low || first < ready || first > last {
             return None;

@@ -93,13 +93,20 @@ pub trait Train {
     /// Takes the next event.
     fn put(&mut self, event: Event);
 
-    /// Takes `pairs` pairs of events, asking `next` for each. A queue may find their places at once.
+    /// Takes a row of `pulses` pulses: `next` gives for each the levels with its pins raised and the clocks to the next
+    /// one's rise; its pins fall to `low` after `width` clocks, and nothing else happens meanwhile. The last one is taken up
+    /// to its fall only: when the next event comes is not known yet, and its clocks mean nothing. A queue may keep a
+    /// pulse in one word.
     #[inline(always)]
-    fn put_pairs(&mut self, pairs: u32, mut next: impl FnMut() -> [Event; 2]) {
-        for _ in 0..pairs {
-            let [first, second] = next();
-            self.put(first);
-            self.put(second);
+    fn put_row(&mut self, pulses: u32, width: u32, low: Levels, mut next: impl FnMut() -> Event) {
+        let mut left = pulses;
+        while left > 0 {
+            left = left.wrapping_sub(1);
+            let pulse = next();
+            self.put(Event::new(pulse.levels(), width));
+            if left > 0 {
+                self.put(Event::new(low, pulse.interval().wrapping_sub(width)));
+            }
         }
     }
 }

@@ -6,7 +6,7 @@ use interp_core::channel::{Report, State};
 use interp_core::train::Levels;
 use stm32f4xx_hal::gpio::alt::SerialAsync as CommonPins;
 use stm32f4xx_hal::gpio::{ExtiPin, PushPull};
-use stm32f4xx_hal::pac::{EXTI, IWDG, RCC, SYSCFG, TIM5, USART2, tim5};
+use stm32f4xx_hal::pac::{DMA2, EXTI, IWDG, RCC, SYSCFG, TIM1, TIM5, USART2, tim5};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
@@ -14,7 +14,7 @@ use stm32f4xx_hal::watchdog::IndependentWatchdog;
 use super::pins::{Contact, Drives, EmergencyInput, StepPort};
 use super::registers::Registers;
 use super::this::TIMER_DIVIDER;
-use super::{Board, link_port};
+use super::{Board, fall, link_port};
 
 /// Pins of one lathe: X step, X direction, Z step, Z direction.
 const LATHE_PINS: u32 = 0xF;
@@ -27,6 +27,8 @@ pub(crate) struct Devices<L> {
     pub(crate) syscfg: SYSCFG,
     pub(crate) exti: EXTI,
     pub(crate) timer: TIM5,
+    /// Timer and DMA of falling edges.
+    pub(crate) fall: (TIM1, DMA2),
     pub(crate) watchdog: IWDG,
     pub(crate) usart: USART2,
     /// The link's pins: transmit, receive.
@@ -46,16 +48,20 @@ where
     T: Into<<USART2 as CommonPins>::Tx<PushPull>>,
     R: Into<<USART2 as CommonPins>::Rx<PushPull>>,
 {
-    let Devices { syscfg, mut exti, timer, watchdog, usart, link } = devices;
+    let Devices { syscfg, mut exti, timer, fall, watchdog, usart, link } = devices;
     let mut syscfg = syscfg.constrain(rcc);
     contact.make_interrupt_source(&mut syscfg);
     contact.trigger_on_edge(&mut exti, stm32f4xx_hal::gpio::Edge::Rising);
     contact.enable_interrupt(&mut exti);
     let (receiver, sender) = link_port::open(usart, link, rcc);
     let timer = StepTimer::new(timer, TIMER_DIVIDER, rcc);
+    let (bsrr, lower) = steps.lowering();
+    let (fall, width) = fall::new(fall.0, fall.1, bsrr, lower, rcc);
     Board {
         timer,
         port: steps,
+        fall,
+        width,
         drives,
         emergency: EmergencyInput,
         contact: Contact,

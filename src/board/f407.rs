@@ -13,7 +13,7 @@
 //! TIM2, TIM3 and TIM4 for spindle and handwheels (PA0, PA15, PB4 to PB9, PD12, PD13) stay free. A display on FSMC does not
 //! go with these pins; one on SPI does.
 //!
-//! Clock: 168 MHz; the timers of APB1 run at 84 MHz, and 84 / 7 = 12.
+//! Clock: 168 MHz; the timers of APB1 run at 84 MHz, and 84 / 7 = 12; those of APB2 at 168 MHz, and 168 / 14 = 12.
 
 use stm32f4xx_hal::gpio::Pin;
 use stm32f4xx_hal::pac::Peripherals;
@@ -35,6 +35,8 @@ pub(crate) type Contact = Pin<'E', 12>;
 
 /// Clock of TIM5, in units of the train's 12 MHz.
 pub(crate) const TIMER_DIVIDER: u16 = 7;
+/// Clock of TIM1, likewise.
+pub(crate) const FALL_DIVIDER: u16 = 14;
 
 /// Sets the board up; every output is at rest.
 pub(crate) fn setup(dp: Peripherals) -> Board {
@@ -51,6 +53,7 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
         syscfg: dp.SYSCFG,
         exti: dp.EXTI,
         timer: dp.TIM5,
+        fall: (dp.TIM1, dp.DMA2),
         watchdog: dp.IWDG,
         usart: dp.USART2,
         link: (gpiod.pd5, gpiod.pd6),

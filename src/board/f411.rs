@@ -13,7 +13,7 @@
 //! PA13 and PA14, the flash footprint PA4 to PA7, TIM2 (PA15, PB3) for the spindle and TIM4 (PB6, PB7) for a
 //! handwheel stay free.
 //!
-//! Clock: 96 MHz, not 100: the timers run at 96 MHz, and 96 / 8 = 12.
+//! Clock: 96 MHz, not 100: all timers run at 96 MHz, and 96 / 8 = 12.
 
 use stm32f4xx_hal::gpio::Pin;
 use stm32f4xx_hal::pac::Peripherals;
@@ -35,6 +35,8 @@ pub(crate) type Contact = Pin<'B', 10>;
 
 /// Clock of TIM5, in units of the train's 12 MHz.
 pub(crate) const TIMER_DIVIDER: u16 = 8;
+/// Clock of TIM1, likewise.
+pub(crate) const FALL_DIVIDER: u16 = 8;
 
 /// Sets the board up; every output is at rest.
 pub(crate) fn setup(dp: Peripherals) -> Board {
@@ -50,6 +52,7 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
         syscfg: dp.SYSCFG,
         exti: dp.EXTI,
         timer: dp.TIM5,
+        fall: (dp.TIM1, dp.DMA2),
         watchdog: dp.IWDG,
         usart: dp.USART2,
         link: (gpioa.pa2, gpioa.pa3),

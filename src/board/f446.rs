@@ -14,7 +14,7 @@
 //! (PC6, PC7), TIM4 (PB6, PB7) stay free.
 //!
 //! Clock: 168 MHz, not 180: the step timer is TIM5 on every board, on APB1 at twice the bus, and 84 / 7 = 12 while
-//! 90 MHz has no whole divider.
+//! 90 MHz has no whole divider; TIM1 on APB2 runs at 168 MHz, and 168 / 14 = 12.
 
 use stm32f4xx_hal::gpio::Pin;
 use stm32f4xx_hal::pac::Peripherals;
@@ -36,6 +36,8 @@ pub(crate) type Contact = Pin<'C', 10>;
 
 /// Clock of TIM5, in units of the train's 12 MHz.
 pub(crate) const TIMER_DIVIDER: u16 = 7;
+/// Clock of TIM1, likewise.
+pub(crate) const FALL_DIVIDER: u16 = 14;
 
 /// Sets the board up; every output is at rest.
 pub(crate) fn setup(dp: Peripherals) -> Board {
@@ -51,6 +53,7 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
         syscfg: dp.SYSCFG,
         exti: dp.EXTI,
         timer: dp.TIM5,
+        fall: (dp.TIM1, dp.DMA2),
         watchdog: dp.IWDG,
         usart: dp.USART2,
         link: (gpioa.pa2, gpioa.pa3),

@@ -1,13 +1,14 @@
 //! Boards: the only code that knows a register.
 //!
 //! Each board is a module with the same `setup() -> Board` and the pins in its own documentation. What boards share
-//! stands beside them: `chip` and `pins` have what all real ones do alike, `link_port` the serial port, `fault` the
+//! stands beside them: `chip` and `pins` have what all real ones do alike, `fall` the falling edges, `link_port` the serial port, `fault` the
 //! handlers of faults, `log` the log, which leaves by `rtt` or `host_log`. All boards use the same interrupts
 //! (a task of the app names one): TIM5 for steps, USART2 for the link, EXTI15_10 for the emergency stop, I2C3_ER for
 //! the interpolator and I2C3_EV for the background (the last two stand for no device).
 //!
 //! The only `unsafe` of the firmware is here.
 
+mod fall;
 mod fault;
 #[cfg(feature = "board-qemu")]
 mod host_log;
@@ -52,6 +53,7 @@ use handcnc::background::parameters::Parameters;
 
 #[cfg(not(feature = "board-qemu"))]
 pub(crate) use chip::{Bench, StepTimer, Watchdog, safe, sleep};
+pub(crate) use fall::{Fall, Width};
 pub(crate) use link_port::{Receiver, Sender};
 #[cfg(not(feature = "board-qemu"))]
 pub(crate) use pins::{Contact, Drives, EmergencyInput, StepPort};
@@ -79,6 +81,10 @@ pub(crate) struct Board {
     pub(crate) timer: StepTimer,
     /// Step and direction pins.
     pub(crate) port: StepPort,
+    /// Lowers the step pins of a pulse.
+    pub(crate) fall: Fall,
+    /// How long a pulse is.
+    pub(crate) width: Width,
     /// Enable pins of motor drivers and spindle.
     pub(crate) drives: Drives,
     /// Interrupt of the emergency stop.

@@ -4,7 +4,8 @@
 //! where nothing can come between, so that the emergency task and the interpolator may both switch.
 
 use handcnc::foreground::outputs::Outputs;
-use interp_core::train::Event;
+use handcnc::foreground::train_queue::Play;
+use interp_core::train::Levels;
 use stm32f4xx_hal::gpio::{Output, Pin, PinState, Pull, Speed};
 use stm32f4xx_hal::pac::gpioa::RegisterBlock;
 use stm32f4xx_hal::pac::{self, EXTI};
@@ -82,10 +83,16 @@ impl StepPort {
         Self(unsafe { Registers::new(registers::<this::XStep>()) })
     }
 
+    /// The register that sets and clears pins, and the word that lowers the step pins.
+    pub(crate) fn lowering(&self) -> (*mut u32, &'static u32) {
+        static LOWER: u32 = set_and_clear(Levels::LOW, FIRST) & ((1 | 1 << 2) << (16 + FIRST));
+        (self.0.bsrr().as_ptr(), &LOWER)
+    }
+
     /// Sets all four pins in one write.
     #[inline]
-    pub(crate) fn write(&mut self, event: Event) {
-        let word = set_and_clear(event.levels(), FIRST);
+    pub(crate) fn write(&mut self, play: Play) {
+        let word = set_and_clear(play.levels(), FIRST);
         // SAFETY: BSRR changes only the pins that it names, and those are owned here; the write is atomic.
         #[allow(unsafe_code, reason = "the HAL sets pins one by one")]
         self.0.bsrr().write(|w| unsafe { w.bits(word) });

@@ -3,7 +3,8 @@
 //!
 //! QEMU's `-d unimp` logs each write to what it lacks, in order and with its value. So this board's port is GPIOE's
 //! ODR, and each interval goes to GPIOF's ODR, too: the log has a pair of port and interval for every event that the
-//! core really played. TIM1's CCR1 gets a mark when the lathe's state changes, its CCR2 one when the train ran empty
+//! core really played; bit 15 of an interval says that the event is a pulse whose fall TIM1 and DMA make (`fall`), whose
+//! registers are logged, too. TIM1's CCR1 gets a mark when the lathe's state changes, its CCR2 one when the train ran empty
 //! or lost events.
 //!
 //! TIM5 counts nanoseconds here; an interval is 0.002 % short, so that it costs few instructions. Its model adds whatever a write of PSC, CNT or
@@ -18,15 +19,21 @@ use handcnc::foreground::Command;
 use handcnc::foreground::alarm::Faults;
 use handcnc::foreground::outputs::Outputs;
 use handcnc::foreground::rehearsal::Rehearsal;
+use handcnc::foreground::train_queue::Play;
 use interp_core::channel::{Report, State};
 use interp_core::config::TICK_CLOCKS;
-use interp_core::train::Event;
 use stm32f4xx_hal::pac::{self, GPIOE, GPIOF, Peripherals, TIM1, TIM5};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Config;
 
 use super::registers::Registers;
-use super::{Board, host_log, link_port};
+use super::{Board, fall, host_log, link_port};
+
+/// TIM1's clock would be the chip's 16 MHz, and the pulses too short; there are no pins.
+pub(crate) const FALL_DIVIDER: u16 = 1;
+
+/// Would lower the step pins.
+static LOWER: u32 = 5 << 16;
 
 /// Sets the board up.
 pub(crate) fn setup(dp: Peripherals) -> Board {
@@ -40,9 +47,13 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
             fail(word);
         }
     });
+    let port = StepPort::new(dp.GPIOE, dp.GPIOF);
+    let (fall, width) = fall::new(dp.TIM1, dp.DMA2, port.0.port.bsrr().as_ptr(), &LOWER, &mut rcc);
     Board {
         timer: StepTimer::new(dp.TIM5),
-        port: StepPort::new(dp.GPIOE, dp.GPIOF),
+        port,
+        fall,
+        width,
         drives: Drives,
         emergency: EmergencyInput,
         contact: Contact,
@@ -114,12 +125,12 @@ impl StepPort {
 
     /// Writes all levels, and for the log the interval.
     #[inline]
-    pub(crate) fn write(&mut self, event: Event) {
+    pub(crate) fn write(&mut self, play: Play) {
         // SAFETY: any value may stand there; the emulator only logs it.
         #[allow(unsafe_code, reason = "registers that the emulator lacks")]
         unsafe {
-            self.0.port.odr().write(|w| w.bits(u32::from(event.levels().bits())));
-            self.0.shadow.odr().write(|w| w.bits(event.interval()));
+            self.0.port.odr().write(|w| w.bits(u32::from(play.levels().bits())));
+            self.0.shadow.odr().write(|w| w.bits(play.word() & 0xFFFF));
         }
     }
 }

@@ -144,6 +144,12 @@ impl<'q> Foreground<'q> {
         }
     }
 
+    /// Clocks that pulses of a row stay high.
+    #[inline]
+    pub const fn pulse_width(&self) -> u32 {
+        self.channel.pulse_width()
+    }
+
     /// Whether the look-ahead has room for blocks that may still come: a sender that is late now delays the cycle.
     pub fn is_hungry(&self) -> bool {
         self.channel.is_hungry()

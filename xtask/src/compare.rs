@@ -20,8 +20,19 @@ pub(crate) struct Played {
     /// Events and ticks before the cycle.
     pub(crate) events_before: u64,
     pub(crate) ticks_before: u64,
-    /// Events, and events with a rising edge, of each tick of the cycle.
-    pub(crate) ticks: Vec<(usize, usize)>,
+    /// Of each tick of the cycle.
+    pub(crate) ticks: Vec<TickCount>,
+}
+
+/// What a tick had of each.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct TickCount {
+    /// Events.
+    pub(crate) events: usize,
+    /// Events with a rising edge.
+    pub(crate) rising: usize,
+    /// Events that a handler played; the others are falls that the hardware makes.
+    pub(crate) handled: usize,
 }
 
 /// Why a comparison failed.
@@ -44,14 +55,28 @@ impl Fault {
 
 const PORT: &str = "GPIOE: unimplemented device write (size 4, offset 0x014, value 0x";
 const INTERVAL: &str = "GPIOF: unimplemented device write (size 4, offset 0x014, value 0x";
+/// TIM1 makes the falls of pulses: its width less one clock, and its start.
+const WIDTH: &str = "timer[1]: unimplemented device write (size 4, offset 0x02c, value 0x";
+const START: &str = "timer[1]: unimplemented device write (size 4, offset 0x000, value 0x";
+/// One pulse, enabled (RM0090 17.4.1).
+const ONCE: u32 = 1 << 3 | 1;
+/// DMA2's stream 5 makes of TIM1's update a write of the step port's BSRR (RM0090 10.5.5 to 10.5.9): channel 6, highest
+/// priority, words, circular, from memory, on; one item; GPIOE's BSRR.
+const STREAM: &str = "DMA2: unimplemented device write (size 4, offset 0x";
+const STREAM_SET: [(u32, u32); 3] =
+    [(0x88, 6 << 25 | 3 << 16 | 2 << 13 | 2 << 11 | 1 << 8 | 1 << 6 | 1), (0x8C, 1), (0x90, 0x4002_1018)];
+/// The interval of a pulse that TIM1 ends.
+const FALLS: u32 = 1 << 15;
 const STATE: &str = "timer[1]: unimplemented device write (size 4, offset 0x034, value 0x";
 const FAULTS: &str = "timer[1]: unimplemented device write (size 4, offset 0x038, value 0x";
 
 /// What the image did.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Logged {
-    /// It played an event.
+    /// A handler played an event.
     Played(Event),
+    /// The hardware did: the fall of a pulse.
+    Fell(Event),
     /// The channel's state changed, in the tick behind the one being played.
     State(u32),
     /// It counts faults: underruns in the upper half, lost events in the lower.
@@ -63,6 +88,12 @@ pub(crate) struct Log<R> {
     lines: R,
     line: String,
     port: Option<u32>,
+    /// Width of pulses.
+    width: u32,
+    /// Which registers of the stream were set as they must be.
+    stream: [bool; 3],
+    /// The fall of the pulse that was begun, until TIM1 is started for it.
+    fall: Option<Event>,
     /// What else QEMU and the image said.
     said: String,
 }
@@ -70,7 +101,7 @@ pub(crate) struct Log<R> {
 impl<R: BufRead> Log<R> {
     /// A log that begins with these lines.
     pub(crate) const fn new(lines: R) -> Self {
-        Self { lines, line: String::new(), port: None, said: String::new() }
+        Self { lines, line: String::new(), port: None, width: 0, stream: [false; 3], fall: None, said: String::new() }
     }
 
     /// The next that the image did.
@@ -87,6 +118,9 @@ impl<R: BufRead> Log<R> {
             let value = |rest: &str| u32::from_str_radix(rest.trim_end().strip_suffix(')')?, 16).ok();
             let after = |start: &str| self.line.strip_prefix(start).and_then(value);
             if let Some(levels) = after(PORT) {
+                if self.fall.is_some() {
+                    return Err(Fault::Differs("a pulse that nothing ends".into()));
+                }
                 if self.port.replace(levels).is_some() {
                     return Err(Fault::Differs("two writes of the port without an interval between".into()));
                 }
@@ -94,10 +128,34 @@ impl<R: BufRead> Log<R> {
                 let Some(levels) = self.port.take() else {
                     return Err(Fault::Differs("an interval without a write of the port".into()));
                 };
-                let (Ok(levels), true) = (u16::try_from(levels), interval <= TICK_CLOCKS) else {
+                let falls = interval & FALLS != 0;
+                let clocks = interval & !FALLS;
+                let rest = clocks.checked_sub(self.width).filter(|rest| *rest > 0);
+                let (Ok(levels), true) = (u16::try_from(levels), clocks <= TICK_CLOCKS && (!falls || rest.is_some()))
+                else {
                     return Err(Fault::Differs(format!("levels {levels:x} for {interval} clocks are no event")));
                 };
-                return Ok(Logged::Played(Event::new(Levels::from_bits(levels), interval)));
+                let low = Levels::from_bits(levels & !STEPS);
+                self.fall = rest.filter(|_| falls).map(|rest| Event::new(low, rest));
+                let clocks = if falls { self.width } else { clocks };
+                return Ok(Logged::Played(Event::new(Levels::from_bits(levels), clocks)));
+            } else if let Some(word) = after(START) {
+                let Some(fall) = self.fall.take().filter(|_| word == ONCE) else {
+                    return Err(Fault::Differs(format!("the timer of falls is started by {word:x} for no pulse")));
+                };
+                if self.stream != [true; 3] {
+                    return Err(Fault::Differs("a pulse falls before its DMA is set up".into()));
+                }
+                return Ok(Logged::Fell(fall));
+            } else if let Some(rest) = self.line.strip_prefix(STREAM) {
+                let written = rest
+                    .split_once(", value 0x")
+                    .and_then(|(at, word)| Some((u32::from_str_radix(at, 16).ok()?, value(word)?)));
+                for (set, (at, wanted)) in self.stream.iter_mut().zip(STREAM_SET) {
+                    *set = written.map_or(*set, |(offset, word)| if offset == at { word == wanted } else { *set });
+                }
+            } else if let Some(clocks) = after(WIDTH) {
+                self.width = clocks.saturating_add(1);
             } else if let Some(word) = after(STATE) {
                 return Ok(Logged::State(word));
             } else if let Some(word) = after(FAULTS) {
@@ -109,6 +167,9 @@ impl<R: BufRead> Log<R> {
     }
 }
 
+/// Step pins of all lathes.
+const STEPS: u16 = 0x5555;
+
 /// Compares what the chip did with the expected train, to its end; `expected` gives the events of each tick.
 pub(crate) fn compare(
     next: &mut impl FnMut() -> Result<Logged, Fault>,
@@ -117,7 +178,11 @@ pub(crate) fn compare(
     let mut comparison = Comparison::new(expected);
     while !comparison.done {
         match next() {
-            Ok(Logged::Played(event)) => comparison.played(event)?,
+            Ok(Logged::Played(event)) => {
+                comparison.played(event)?;
+                comparison.handled();
+            }
+            Ok(Logged::Fell(event)) => comparison.played(event)?,
             Ok(Logged::State(word)) => comparison.state(word),
             Ok(Logged::Fault(word)) => {
                 let (underruns, lost) = (word >> 16, word & 0xFFFF);
@@ -153,7 +218,7 @@ struct Comparison<'e> {
     events: u64,
     events_before: u64,
     /// Events, and those with a rising edge, of each tick of the cycle.
-    counts: Vec<(usize, usize)>,
+    counts: Vec<TickCount>,
     hash: Hash,
     moved: u64,
     done: bool,
@@ -208,6 +273,13 @@ impl<'e> Comparison<'e> {
         Ok(())
     }
 
+    /// The event played last was played by a handler.
+    fn handled(&mut self) {
+        if let (Some(tick), false) = (self.counts.last_mut(), self.done) {
+            tick.handled = tick.handled.saturating_add(1);
+        }
+    }
+
     fn compare(&mut self, found: Event) -> Result<(), Fault> {
         if self.next >= self.tick.len() {
             let Ok(tick) = self.expected.recv() else {
@@ -217,11 +289,11 @@ impl<'e> Comparison<'e> {
             let mut before = self.before;
             let mut rising = 0_usize;
             for event in &tick {
-                let rises = event.levels().bits() & !before.bits() & 0x5555 != 0;
+                let rises = event.levels().bits() & !before.bits() & STEPS != 0;
                 rising = rising.saturating_add(usize::from(rises));
                 before = event.levels();
             }
-            self.counts.push((tick.len(), rising));
+            self.counts.push(TickCount { events: tick.len(), rising, handled: 0 });
             if rising > 0 {
                 let mut hash = self.hash;
                 tick.iter().for_each(|event| hash.event(*event));
@@ -293,7 +365,16 @@ mod tests {
         lines.push(format!("{STATE}2)"));
         lines.extend(idle());
         lines.push("RCC: unimplemented device read (size 4, offset 0x000)".into());
-        lines.extend(TICKS.iter().flat_map(|tick| tick.iter()).flat_map(play));
+        let events: Vec<_> = TICKS.iter().flat_map(|tick| tick.iter()).collect();
+        lines.extend(events.iter().take(4).copied().flat_map(play));
+        // the third tick's pulse is ended by the hardware
+        lines.insert(3, format!("{WIDTH}{:x})", 60 - 1));
+        for (number, (at, word)) in (3..).zip(STREAM_SET) {
+            lines.insert(number, format!("{STREAM}{at:03x}, value 0x{word:08x})"));
+        }
+        lines.extend(play(&(0b1110, FALLS | (60 + 6_940))));
+        lines.push(format!("{START}{ONCE:x})"));
+        lines.extend(events.iter().skip(6).copied().flat_map(play));
         // what tells that the cycle is over
         lines.extend(play(&(10, 12_000)));
         lines
@@ -315,7 +396,8 @@ mod tests {
     fn a_train_is_equal_to_itself() {
         let played = compared(&log()).unwrap();
         assert_eq!((played.events, played.events_before, played.ticks_before), (7, 3, 3));
-        assert_eq!(played.ticks, [(2, 1), (1, 0), (3, 1), (1, 0)]);
+        let counts = played.ticks.iter().map(|tick| (tick.events, tick.rising, tick.handled));
+        assert_eq!(counts.collect::<Vec<_>>(), [(2, 1, 2), (1, 0, 1), (3, 1, 2), (1, 0, 1)]);
     }
 
     #[test]
@@ -332,11 +414,12 @@ mod tests {
             let (start, value) = good[at].rsplit_once("0x").unwrap();
             let value = u32::from_str_radix(value.trim_end_matches(')'), 16).unwrap();
             changed[at] = format!("{start}0x{:x})", value ^ 1);
-            let (port, idle) = (good[at].starts_with(PORT), at < 4);
+            let idle = good[at].starts_with(INTERVAL) && at < 8;
             assert!(compared(&changed).is_err(), "{at} changed");
-            // one idle tick less before the start is no fault
-            assert!(compared(&doubled).is_err() || good[at].starts_with(STATE), "{at} doubled");
-            assert!(compared(&missing).is_err() || idle && !port, "{at} missing");
+            // one idle tick less before the start is no fault; a state or a width may be told twice
+            let told = [STATE, WIDTH, STREAM].iter().any(|start| good[at].starts_with(start));
+            assert!(compared(&doubled).is_err() || told, "{at} doubled");
+            assert!(compared(&missing).is_err() || idle, "{at} missing");
         }
     }
 

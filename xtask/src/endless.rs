@@ -177,7 +177,7 @@ impl Record {
         let mut before = Levels::LOW;
         let mut pulses = 0_i64;
         for logged in &self.logged {
-            let Logged::Played(event) = logged else { continue };
+            let (Logged::Played(event) | Logged::Fell(event)) = logged else { continue };
             let levels = event.levels();
             if levels.step(axis) && !before.step(axis) {
                 pulses = pulses.saturating_add(if levels.plus(axis) { 1 } else { -1 });
@@ -199,7 +199,7 @@ impl Record {
         let behind: Vec<Logged> = logged.filter(|logged| !matches!(logged, Logged::State(_))).collect();
         let idles = |logged: &Logged| match logged {
             Logged::Played(event) => event.interval() == TICK_CLOCKS,
-            Logged::State(_) | Logged::Fault(_) => false,
+            Logged::Fell(_) | Logged::State(_) | Logged::Fault(_) => false,
         };
         let same = behind.windows(2).all(|pair| pair.first() == pair.last());
         if behind.first().is_some_and(idles) && same { Ok(()) } else { Err("no idle ticks behind the end".into()) }

@@ -1,8 +1,8 @@
 //! What a step costs: executed instructions on the emulated chip.
 //!
 //! QEMU runs the image with a plugin (`plugin/count.c`) that counts the instructions of each call of a handler,
-//! without those of handlers that preempted it. Each call of `pulse` plays one event and each call of `interpolate`
-//! makes one tick, so the counts are put beside the events of the same run, which are compared with the desktop's
+//! without those of handlers that preempted it. Each call of `pulse` plays one event, or a pulse whose fall the hardware makes, and
+//! each call of `interpolate` makes one tick, so the counts are put beside the events of the same run, which are compared with the desktop's
 //! meanwhile: figures of a wrong train would be none.
 //!
 //! A **step event** is an event with at least one rising edge; its falling edge is part of its cost. Means are over
@@ -145,11 +145,11 @@ fn compile(folder: &Path) -> Result<PathBuf> {
     Ok(plugin)
 }
 
-/// One tick's figures: step events, events, instructions of each handler.
+/// One tick's figures: step events, calls of `pulse`, instructions of each handler.
 #[derive(Copy, Clone, Debug, Default)]
 struct Tick {
     steps: u64,
-    events: u64,
+    calls: u64,
     pulse: u64,
     interpolate: u64,
 }
@@ -193,12 +193,12 @@ impl Counts {
         let before = usize::try_from(played.events_before)?;
         let mut at = before;
         let first = usize::try_from(played.ticks_before)?;
-        for (number, (events, steps)) in played.ticks.iter().enumerate() {
-            let calls = pulse.get(at..at + events).context("the plugin saw fewer events than were played")?;
+        for (number, tick) in played.ticks.iter().enumerate() {
+            let calls = pulse.get(at..at + tick.handled).context("the plugin saw fewer events than were played")?;
             let made = *interpolate.get(first + number).context("the plugin saw fewer ticks than were played")?;
-            let (steps, events) = (*steps as u64, *events as u64);
-            ticks.push(Tick { steps, events, pulse: calls.iter().sum(), interpolate: made });
-            at += usize::try_from(events)?;
+            let (steps, pulse) = (tick.rising as u64, calls.iter().sum());
+            ticks.push(Tick { steps, calls: tick.handled as u64, pulse, interpolate: made });
+            at += tick.handled;
         }
         let most = ticks.iter().map(|tick| tick.steps).max().unwrap_or(0);
         if most == 0 {
@@ -247,7 +247,7 @@ fn figures(counts: &Counts, per_step: f64) -> Value {
     let (steps, cost) = counts.usual();
     json!({
         "step_events_per_tick": most,
-        "interrupts_per_step_event": rounded(ratio(&full, |tick| (tick.events + 1) as f64, |tick| tick.steps as f64)),
+        "interrupts_per_step_event": rounded(ratio(&full, |tick| (tick.calls + 1) as f64, |tick| tick.steps as f64)),
         "per_step_event": {
             "pulse": mean_and_worst(&full, |tick| tick.pulse),
             "interpolate": mean_and_worst(&full, |tick| tick.interpolate),
@@ -278,7 +278,7 @@ fn figures(counts: &Counts, per_step: f64) -> Value {
 /// What a tick's interrupts take of the chip, percent.
 fn percent(tick: &Tick) -> f64 {
     let instructions = (tick.pulse + tick.interpolate) as f64;
-    let interrupts = (tick.events + 1) as f64;
+    let interrupts = (tick.calls + 1) as f64;
     (instructions * CLOCKS_PER_INSTRUCTION + interrupts * CLOCKS_PER_INTERRUPT) * 100.0 * f64::from(TICKS_PER_SECOND)
         / CLOCK_HZ
 }

@@ -222,6 +222,12 @@ impl<const N: usize> Channel<N> {
         !self.complete && self.ahead.has_room()
     }
 
+    /// Clocks that pulses of a row stay high.
+    #[inline]
+    pub const fn pulse_width(&self) -> u32 {
+        self.shaper.row_width()
+    }
+
     /// How often a block was wanted and none was there.
     pub const fn starved(&self) -> u32 {
         self.starved
