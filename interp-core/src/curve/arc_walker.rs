@@ -297,6 +297,21 @@ impl ArcWalker {
         self.target = (self.x, self.z);
     }
 
+    /// Gives the next steps of the octant, at most [`left_in_row`](Self::left_in_row).
+    #[inline(always)]
+    fn each_in_row<W: Word>(&mut self, steps: u32, take: &mut impl FnMut(Step)) {
+        let [straight, diagonal] = [false, true].map(|diagonal| self.strides.step(diagonal));
+        self.row::<W>(|row| {
+            let mut diagonals = 0_u32;
+            for _ in 0..steps {
+                let turns = row.turns();
+                diagonals = diagonals.wrapping_add(u32::from(turns));
+                take(if turns { diagonal } else { straight });
+            }
+            (steps, diagonals)
+        });
+    }
+
     /// Whether the recurrence's changing figures are all within `most`.
     #[cfg(test)]
     pub(super) fn fits(&self, most: i64) -> bool {
@@ -422,6 +437,21 @@ impl Walker for ArcWalker {
             let joint = self.arc.joint_of(self.piece);
             self.target = (self.x.wrapping_add(joint.0), self.z.wrapping_add(joint.1));
             self.enter(self.piece.wrapping_add(1), Arc::octant_after(self.octant, self.arc.sense));
+        }
+    }
+
+    fn each_step(&mut self, mut take: impl FnMut(Step)) {
+        loop {
+            let left = self.left_in_row();
+            if left == 0 {
+                // joints, and what lies behind the lattice line nearest the centre
+                let Some(step) = self.next_step() else { break };
+                take(step);
+            } else if self.narrow {
+                self.each_in_row::<i32>(left, &mut take);
+            } else {
+                self.each_in_row::<i64>(left, &mut take);
+            }
         }
     }
 

@@ -140,6 +140,16 @@ impl Walker for LineWalker {
         };
         Some(Step { x: step.x.wrapping_neg(), z: step.z.wrapping_neg() })
     }
+
+    fn each_step(&mut self, mut take: impl FnMut(Step)) {
+        let (left, steps) = (self.left(), [false, true].map(|diagonal| self.strides.step(diagonal)));
+        self.row(|row| {
+            for _ in 0..left {
+                take(if row.turns() { steps[1] } else { steps[0] });
+            }
+            left
+        });
+    }
 }
 
 #[cfg(test)]
@@ -170,6 +180,9 @@ mod tests {
                 }
                 assert!(visited.is_empty());
                 assert_eq!(walker, line.walk());
+                let mut single = line.walk();
+                walker.each_step(|step| assert_eq!(Some(step), single.next_step()));
+                assert_eq!((walker, single.next_step()), (single, None));
             }
         }
     }

@@ -41,6 +41,12 @@ pub trait Walker {
     fn next_step(&mut self) -> Option<Step>;
     /// The step that led here, undone, or `None` at the start.
     fn previous_step(&mut self) -> Option<Step>;
+    /// All steps that are left: as [`next_step`](Self::next_step) gives them, in less time where a walker makes rows.
+    fn each_step(&mut self, mut take: impl FnMut(Step)) {
+        while let Some(step) = self.next_step() {
+            take(step);
+        }
+    }
 }
 
 /// Enumerates the steps of one curve where a step does not tell where it came from: the classic methods on circles.
