@@ -9,6 +9,7 @@ use handcnc::foreground::Command;
 use indicatif::ProgressBar;
 use interp_core::channel::{self, State};
 use interp_core::config::{AxisConfig, Config, Machine};
+use interp_core::curve::method::Method;
 use interp_core::units::{Axis, Point, Sense};
 use measure::{Checker, Limits, Motion, PerAxis, PulseEquivalent, Report, Setup, Shape};
 use stock::Clamped;
@@ -249,6 +250,7 @@ fn setup(parameters: &Parameters, machine: &Machine) -> Setup {
         start_nm: nm(start),
         limits: PerAxis { x: limits(&x), z: limits(&z) },
         event_min_ns,
+        uneven: matches!(machine.method, Method::Dda | Method::RateMultiplier),
     }
 }
 

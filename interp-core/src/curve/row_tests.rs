@@ -40,7 +40,7 @@ fn compare(sizes: [(u32, u32); 2], end: Lattice, centre: (i64, i64), sense: Sens
     }
     assert_eq!((single.next_step(), single.position()), (None, (end.x, end.z)));
     let (mut all, mut single) = (arc.walk(), arc.walk());
-    assert!(most % 2 == 0 || all.next_step() == single.next_step());
+    assert!(most.is_multiple_of(2) || all.next_step() == single.next_step());
     all.each_step(|step| assert_eq!(Some(step), single.next_step()));
     assert_eq!((all, single.next_step()), (single, None));
 }

@@ -2,6 +2,7 @@
 //! What the tests of whole cycles share: running a program, and an oracle for the time that it may take.
 
 pub mod optimum;
+pub mod programs;
 
 use feature_editor::codes::Item;
 use handcnc::background::parameters::Parameters;

@@ -9,6 +9,8 @@
 //!   pulse for the major axis's, and less than f = 4 can be faked. (A walk with minimum deviation along 3:4
 //!   does reach 3 where the ideal acceleration is nearly nothing.) So f = 4 for an axis in windows with a
 //!   step of the other one alone, else 2; and 4 for both on arcs, where the axes change places.
+//!   Where the method's pulses come unevenly, f = 6 always: a half for rounding, a half for the lattice line of the
+//!   other axis that tells the time, a half for a step of its own between two of them, four times.
 //!   Where an axis turns round, its lag changes sides: at joints, starts and stops f is 2 more.
 //! * **Wait**: an edge may be up to two shortest intervals of an event late, as edges keep clear of each
 //!   other and of the tick's border. At the largest speed v that is w = 2 v event_min pulses; the bounds
@@ -43,6 +45,8 @@ const FIRST: u64 = 1024;
 const FAKED: i64 = 2;
 /// What it fakes beyond that for an axis that steps only along with the other.
 const FAKED_MINOR: i64 = 2;
+/// What it fakes beyond the two where the method's pulses come unevenly.
+const FAKED_UNEVEN: i64 = 4;
 /// What it fakes beyond that where an axis may turn round at a joint.
 const FAKED_TURNING: i64 = 2;
 
@@ -81,6 +85,7 @@ fn floor(bound: f64) -> i64 {
 struct Watch {
     axis: Axis,
     bounds: [Bounds; 9],
+    uneven: bool,
     /// How far it goes at most while an edge waits, in pulses.
     wait: f64,
     /// mm/s² of one pulse of second difference over 8 ticks.
@@ -92,9 +97,9 @@ struct Watch {
 }
 
 impl Watch {
-    fn new(axis: Axis, limits: Limits, nm: f64, event_min_ns: u32) -> Self {
+    fn new(axis: Axis, limits: Limits, nm: f64, setup: &Setup) -> Self {
         let mm = nm / 1e6;
-        let wait = limits.max_feed / 60.0 / mm * 2.0 * f64::from(event_min_ns) / 1e9;
+        let wait = limits.max_feed / 60.0 / mm * 2.0 * f64::from(setup.event_min_ns) / 1e9;
         let bounds = [1_u16, 2, 4, 8, 16, 32, 64, 128, 256].map(|ticks| {
             let h = f64::from(ticks) / 1e3;
             let bend = limits.max_accel / mm * h * h + 2.0;
@@ -106,7 +111,7 @@ impl Watch {
                 bend_floor: floor(bend),
             }
         });
-        Self { axis, bounds, wait, unit: mm / (0.008 * 0.008), greatest: 0, excess: 0.0 }
+        Self { axis, bounds, uneven: setup.uneven, wait, unit: mm / (0.008 * 0.008), greatest: 0, excess: 0.0 }
     }
 
     fn fault(&self, kind: FaultKind, ticks: u16, found: i64, bound: i64, here: Here) -> Fault {
@@ -128,7 +133,11 @@ impl Watch {
         for bounds in self.bounds {
             let (middle, first) = (ring(bounds.ticks), ring(2 * bounds.ticks));
             let (centre, start) = (i64::from(axis(middle).0), axis(first));
-            let minor = if start.1 == without { 0 } else { FAKED_MINOR };
+            let minor = match (self.uneven, start.1 == without) {
+                (true, _) => FAKED_UNEVEN,
+                (false, true) => 0,
+                (false, false) => FAKED_MINOR,
+            };
             let travel = (end - centre).abs();
             if travel > bounds.travel + minor / 2 {
                 let (kind, bound) = (FaultKind::Speed, bounds.travel + minor / 2);
@@ -218,8 +227,8 @@ impl Accel {
             began: 1,
             ended: 0,
             without: PerAxis::default(),
-            x: Watch::new(Axis::X, limits.x, pulse.x.nm(), setup.event_min_ns),
-            z: Watch::new(Axis::Z, limits.z, pulse.z.nm(), setup.event_min_ns),
+            x: Watch::new(Axis::X, limits.x, pulse.x.nm(), setup),
+            z: Watch::new(Axis::Z, limits.z, pulse.z.nm(), setup),
         }
     }
 

@@ -108,6 +108,9 @@ pub struct Setup {
     pub limits: PerAxis<Limits>,
     /// Shortest interval of an event, in ns.
     pub event_min_ns: u32,
+    /// The pulses of an axis that moves evenly come unevenly, up to one and a half before or behind its ideal place: so
+    /// do those of digital integration and of a rate multiplier.
+    pub uneven: bool,
 }
 
 /// Why a set-up was refused.

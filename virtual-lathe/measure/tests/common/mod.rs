@@ -36,6 +36,7 @@ pub fn setup() -> Setup {
         start_nm: PerAxis { x: 0, z: 0 },
         limits: PerAxis { x: limits, z: limits },
         event_min_ns: 2_000,
+        uneven: false,
     }
 }
 
