@@ -57,11 +57,24 @@ pub(crate) fn test() -> Result<(), String> {
     Ok(())
 }
 
-/// The property tests of whole programs, at length.
+/// Cases of each property in a round of a long run.
+const ROUND: u32 = 1000;
+
+/// The property tests at length, each round with other random cases: what is done is told after each.
 pub(crate) fn soak(cases: u32) -> Result<(), String> {
-    let cases = &*cases.to_string();
-    let environment = [("HANDCNC_CASES", cases), ("PROPTEST_CASES", cases)];
-    cargo("soak", &["test", "--release", "-p", "host-tests", "-p", "interp-core", "-p", "measure"], &environment)
+    let arguments = ["test", "--quiet", "--release", "-p", "host-tests", "-p", "interp-core", "-p", "measure"];
+    let rounds = cases.div_ceil(ROUND).max(1);
+    let share = cases.div_ceil(rounds);
+    let began = Instant::now();
+    for round in 1..=rounds {
+        let number = &*share.to_string();
+        let environment = [("HANDCNC_CASES", number), ("PROPTEST_CASES", number)];
+        cargo(&format!("soak, round {round} of {rounds}"), &arguments, &environment)?;
+        let gone = began.elapsed().as_secs_f64();
+        let left = gone / f64::from(round) * f64::from(rounds - round);
+        eprintln!("== {} cases of each property in {gone:.0} s, about {left:.0} s to go", share * round);
+    }
+    Ok(())
 }
 
 #[cfg(test)]
