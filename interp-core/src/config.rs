@@ -3,6 +3,7 @@
 //! Speeds inside are in nanometres a tick with 12 fraction bits, accelerations in nanometres a tick squared with 12
 //! fraction bits (so 1 mm/s2 is 4096), times of the train in clocks of 12 MHz.
 
+use crate::compensation::Plan;
 use crate::curve::method::Method;
 use crate::math::to_u32;
 use crate::units::{Axis, Feedrate, PulseSize};
@@ -101,6 +102,8 @@ pub struct Machine {
     pub event_min: u32,
     /// How steps follow a curve. Without the feature `methods` always by minimum deviation.
     pub method: Method,
+    /// What the motors have to go beyond the program. [`Config::check`] leaves it empty; see [`Machine::compensated`].
+    pub compensation: Plan,
 }
 
 /// Speed in the interpolator's unit, rounded to nearest, at least 1.
@@ -177,7 +180,7 @@ impl Config {
         let event_min = clocks(self.event_min_ns).max(1);
         let x = self.x.check(Axis::X, event_min, self.z.pulse_width_ns)?;
         let z = self.z.check(Axis::Z, event_min, self.x.pulse_width_ns)?;
-        Ok(Machine { x, z, event_min, method: Method::MinimumDeviation })
+        Ok(Machine { x, z, event_min, method: Method::MinimumDeviation, compensation: Plan::default() })
     }
 }
 

@@ -5,6 +5,7 @@
 #![doc = include_str!("../README.md")]
 pub mod block;
 pub mod channel;
+pub mod compensation;
 pub mod config;
 pub mod curve;
 pub mod governor;

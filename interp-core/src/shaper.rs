@@ -159,6 +159,16 @@ impl Shaper {
         self.began.wrapping_sub(BORDER)
     }
 
+    /// When the last event began, clocks from the start of the present tick.
+    pub const fn began(&self) -> i32 {
+        self.began
+    }
+
+    /// Whether the direction pin of an axis says plus.
+    pub const fn faces_plus(&self, axis: Axis) -> bool {
+        self.levels.plus(axis)
+    }
+
     /// Makes up to `count` steps that come evenly: each is straight, or diagonal where `turns` says so. Makes none, or fewer, where a step touches a rule: such a step is for
     /// [`step`](Self::step), to which all others come out the same.
     ///

@@ -5,6 +5,7 @@
 //! X direction, Z step, Z direction; a direction is high for plus. The intervals of a tick add up to exactly
 //! [`TICK_CLOCKS`](crate::config::TICK_CLOCKS), so the train is the clock and nothing drifts.
 
+use crate::curve::Step;
 use crate::units::Axis;
 
 /// Levels of the step port.
@@ -109,6 +110,11 @@ pub trait Train {
             }
         }
     }
+
+    /// Is told that at a clock of the present tick (one past its end is in the next) the motors were moved by `made`
+    /// where the program moved by `program`. For those who have to know the program's position at every step.
+    #[inline(always)]
+    fn superposed(&mut self, _clock: i32, _program: Step, _made: Step) {}
 }
 
 impl<F: FnMut(Event)> Train for F {

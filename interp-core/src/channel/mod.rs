@@ -7,20 +7,25 @@
 #[cfg(feature = "methods")]
 mod classic;
 mod cruise;
+pub mod follower;
 pub mod lookahead;
 mod runner;
+pub mod superposed;
 
 use crate::block::{Block, Motion, Output, Speed, Work};
+use crate::compensation::Compensation;
+use crate::compensation::pitch::PitchTable;
 use crate::config::{Machine, TICK_CLOCKS};
 use crate::governor::Advance;
 use crate::math::root;
 use crate::shaper::Shaper;
 use crate::times::Stretch;
 use crate::train::Train;
-use crate::units::Lattice;
+use crate::units::{Axis, Lattice};
 use cruise::Cruise;
 use lookahead::{Lookahead, pace};
 use runner::{Runner, Sink};
+use superposed::Superposed;
 
 /// Blocks taken in one tick while a cycle fills the look-ahead.
 const FILL_PER_TICK: usize = 16;
@@ -117,7 +122,9 @@ pub struct Channel<const N: usize> {
     waited: u32,
     position: Lattice,
     shaper: Shaper,
+    superposed: Superposed,
     current: Current,
+    compensation: Compensation,
     ahead: Lookahead<N>,
 }
 
@@ -131,6 +138,8 @@ impl<const N: usize> Channel<N> {
             line: 0,
             speed: 0,
             shaper: Shaper::new(machine),
+            superposed: Superposed::new(),
+            compensation: Compensation::new(&machine.compensation, position),
             position,
             feed_override: 100,
             optional_stop: false,
@@ -170,6 +179,7 @@ impl<const N: usize> Channel<N> {
     /// planned; where the tool is nobody knows.
     pub fn abandon(&mut self) {
         self.speed = 0;
+        self.compensation.stop();
         self.forget();
     }
 
@@ -197,9 +207,31 @@ impl<const N: usize> Channel<N> {
         let idle = matches!(self.state, State::Idle | State::Ended);
         if idle {
             self.shaper.configure(machine);
+            self.compensation.configure(&machine.compensation, self.position);
             self.rest = machine.x.jump.min(machine.z.jump);
         }
         idle
+    }
+
+    /// Puts a pitch error table in the place of an axis's last one. It acts where the machine's parameters have it in
+    /// force; where the tool stands counts as right. False, and nothing changes, while a cycle runs.
+    pub fn set_pitch_table(&mut self, axis: Axis, table: &PitchTable) -> bool {
+        let idle = matches!(self.state, State::Idle | State::Ended);
+        if idle {
+            self.compensation.set_pitch_table(axis, table, self.position);
+        }
+        idle
+    }
+
+    /// Sets the temperature of the screws, thousandths of a degree Celsius. While a cycle runs it acts slowly.
+    pub fn set_temperature(&mut self, temperature: i32) {
+        let slowly = !matches!(self.state, State::Idle | State::Ended);
+        self.compensation.set_temperature(temperature, slowly);
+    }
+
+    /// Pulses that the motor of an axis is due beyond the program since the position was made known.
+    pub const fn compensation(&self, axis: Axis) -> i32 {
+        self.compensation.given(axis)
     }
 
     /// Whether optional stops stop.
@@ -239,7 +271,14 @@ impl<const N: usize> Channel<N> {
         self.take(source);
         let mut output = None;
         if in_cycle {
+            if self.compensation.is_on() {
+                let (x, z) = self.compensation.tick(self.position);
+                self.superposed.begin(x, z);
+            }
             output = self.run(out);
+            if self.superposed.is_live() {
+                self.superposed.end(&mut self.shaper, out);
+            }
         }
         self.shaper.end_tick(out);
         if matches!(self.state, State::Filling) {
@@ -251,7 +290,7 @@ impl<const N: usize> Channel<N> {
                 self.state = State::Idle;
             }
         }
-        if matches!(self.state, State::Resetting) && self.speed == 0 {
+        if matches!(self.state, State::Resetting) && self.speed == 0 && self.settled() {
             self.forget();
         }
         Report { state: self.state, in_cycle, output, line: self.line, speed: self.speed }
@@ -311,12 +350,22 @@ impl<const N: usize> Channel<N> {
         None
     }
 
+    /// Whether all is made that has to be added to the program where it stands.
+    fn settled(&self) -> bool {
+        !self.superposed.is_live() && (!self.compensation.is_on() || self.compensation.settled())
+    }
+
     /// Begins what comes next.
     // apart from `run`, so that a tick inside a block pays nothing for it
     #[inline(never)]
     fn next_block(&mut self) -> Next {
         // a hold brakes on over joints; it ends where the program stands anyway
         if !matches!(self.state, State::Running) && self.speed == 0 {
+            return Next::Stands;
+        }
+        // the tool is where it should be before the program stands; and only a cycle moves what is added
+        let moves = self.ahead.next().is_some_and(|(block, _)| lookahead::as_motion(block).is_some());
+        if !moves && !self.settled() {
             return Next::Stands;
         }
         let Some((block, entry)) = self.ahead.next() else {
@@ -403,7 +452,8 @@ impl<const N: usize> Channel<N> {
         };
         active.done = active.done.wrapping_add(advance.length);
         self.speed = advance.speed;
-        let mut sink = Sink { shaper: &mut self.shaper, position: &mut self.position, out };
+        let mut sink =
+            Sink { shaper: &mut self.shaper, position: &mut self.position, superposed: &mut self.superposed, out };
         let stretch = Stretch { from: clock, clocks: advance.clocks };
         active.runner.advance(active.done, stretch, &mut sink);
         if advance.done {

@@ -7,6 +7,7 @@
 
 #[cfg(feature = "methods")]
 use super::classic::{ChordRunner, ClassicRunner};
+use super::superposed::Superposed;
 use crate::block::Curve;
 use crate::curve::arc::Arc;
 use crate::curve::arc_walker::{ArcWalker, Word};
@@ -28,6 +29,8 @@ pub(super) struct Sink<'s, O> {
     pub(super) shaper: &'s mut Shaper,
     /// Where they lead.
     pub(super) position: &'s mut Lattice,
+    /// What is added to them.
+    pub(super) superposed: &'s mut Superposed,
     /// Takes the events.
     pub(super) out: &'s mut O,
 }
@@ -35,7 +38,11 @@ pub(super) struct Sink<'s, O> {
 impl<O: Train> Sink<'_, O> {
     /// One step, at a clock or as soon after as the pins allow.
     pub(super) fn step(&mut self, clock: u32, step: Step) {
-        self.shaper.step(clock, step.x, step.z, self.out);
+        if self.superposed.is_live() {
+            self.superposed.step(clock, step, self.shaper, self.out);
+        } else {
+            self.shaper.step(clock, step.x, step.z, self.out);
+        }
         self.position.x = self.position.x.wrapping_add(i32::from(step.x));
         self.position.z = self.position.z.wrapping_add(i32::from(step.z));
     }
@@ -43,6 +50,10 @@ impl<O: Train> Sink<'_, O> {
     /// Up to `count` steps of two kinds, as far as they can be made in a row.
     #[inline(always)]
     fn row(&mut self, times: &mut Times, count: u32, strides: &Strides, turns: impl FnMut() -> bool) -> Made {
+        let count = if self.superposed.is_live() { self.superposed.room(times, count) } else { count };
+        if count == 0 {
+            return Made { steps: 0, diagonals: 0 };
+        }
         let made = self.shaper.run(times, count, strides, turns, self.out);
         let (x, z) = strides.lead(made.steps, made.diagonals);
         self.position.x = self.position.x.wrapping_add(x);

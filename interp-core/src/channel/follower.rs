@@ -1,0 +1,91 @@
+//! Follows a place that moves by itself, within a speed and an acceleration.
+//!
+//! For what is added to the program's motion: compensation now, handwheels later. Its place has fraction bits; the
+//! whole pulses that it moves by in a tick are for [`Superposed`](super::superposed::Superposed). It lands on a place
+//! that stands exactly and without overshoot, and follows one that changes its speed by less than the acceleration a
+//! tick without lag.
+
+use crate::compensation::{FRACTION, PULSE};
+use crate::math::root;
+
+/// Limits of a follower.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Pace {
+    /// Pulses a tick, with [`FRACTION`] fraction bits.
+    pub speed: i64,
+    /// Pulses a tick squared, with [`FRACTION`] fraction bits; at least 1.
+    pub accel: i64,
+}
+
+/// A follower.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Follower {
+    /// Place, pulses with [`FRACTION`] fraction bits.
+    place: i64,
+    /// Moved in the last tick.
+    speed: i64,
+}
+
+impl Follower {
+    /// Stands at 0.
+    pub const fn new() -> Self {
+        Self::at(0)
+    }
+
+    /// Stands at `place`, pulses with [`FRACTION`] fraction bits.
+    pub const fn at(place: i64) -> Self {
+        Self { place, speed: 0 }
+    }
+
+    /// Where it is, pulses with [`FRACTION`] fraction bits.
+    pub const fn place(&self) -> i64 {
+        self.place
+    }
+
+    /// The nearest whole pulse, half upward.
+    #[expect(clippy::cast_possible_truncation, reason = "places are below 2^30 pulses")]
+    pub const fn pulses(&self) -> i32 {
+        (self.place.wrapping_add(PULSE / 2) >> FRACTION) as i32
+    }
+
+    /// Moves for a tick towards `target`; the whole pulses that it moved by.
+    ///
+    /// The speed is at most the one from which it can stop on the target: `v + (v - a) + (v - 2 a) + .. = v (v + a) /
+    /// 2 a` is at most the distance, so `v = (sqrt(a^2 + 8 a distance) - a) / 2`.
+    pub fn follow(&mut self, target: i64, pace: &Pace) -> i32 {
+        let distance = target.wrapping_sub(self.place);
+        if distance == 0 && self.speed == 0 {
+            return 0;
+        }
+        let before = self.pulses();
+        let (accel, away) = (pace.accel, distance.unsigned_abs());
+        let most = if away <= accel.unsigned_abs() {
+            away
+        } else {
+            let squared = accel.unsigned_abs().saturating_mul(accel.unsigned_abs());
+            let reach = squared.saturating_add(away.saturating_mul(8).saturating_mul(accel.unsigned_abs()));
+            u64::from(root(reach)).saturating_sub(accel.unsigned_abs()) / 2
+        };
+        let most = i64::try_from(most).unwrap_or(i64::MAX).min(pace.speed);
+        let wanted = most.wrapping_mul(distance.signum());
+        self.speed = wanted.clamp(self.speed.wrapping_sub(accel), self.speed.wrapping_add(accel));
+        self.place = self.place.wrapping_add(self.speed);
+        self.pulses().wrapping_sub(before)
+    }
+
+    /// Stops where it is, from any speed.
+    pub const fn stop(&mut self) {
+        self.speed = 0;
+    }
+
+    /// Whether it is within `tolerance` of `target` and can stop within a tick.
+    pub const fn is_near(&self, target: i64, tolerance: i64, pace: &Pace) -> bool {
+        target.wrapping_sub(self.place).saturating_abs() < tolerance && self.speed.saturating_abs() <= pace.accel
+    }
+}
+
+impl Default for Follower {
+    fn default() -> Self {
+        Self::new()
+    }
+}

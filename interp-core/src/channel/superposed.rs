@@ -1,0 +1,198 @@
+//! Pulses that are added to the program's: compensation now, handwheels later.
+//!
+//! The contract: [`begin`](Superposed::begin) tells, before a tick's steps are made, *these signed pulses of X and Z are
+//! to be added in this tick*. They are spread evenly over it and come among the program's steps in the order of time,
+//! through the shaper and under its rules. [`end`](Superposed::end) makes those that the program's last step left.
+//! What is added in all ticks is made to the pulse; how it comes by is not the caller's concern. Its speed and
+//! acceleration together with the program's are.
+//!
+//! **Opposite pulses cancel first.** A pulse that would turn its axis round is not made at once: it is owed. A pulse
+//! the other way, the program's or an added one, then cancels it, and neither is made. A second one the same way shows
+//! that the axis does turn, and both are made; so does the time, after [`PATIENCE`] ticks. So a motor is at most one
+//! pulse behind, and an axis that moves on under a compensation against its motion never turns round.
+//!
+//! A tick without such pulses knows nothing of all this.
+
+use crate::config::TICK_CLOCKS;
+use crate::curve::Step;
+use crate::shaper::Shaper;
+use crate::times::{FRACTION, Times};
+use crate::train::Train;
+use crate::units::Axis;
+
+/// Ticks that a pulse may be owed.
+pub const PATIENCE: u8 = 16;
+
+/// What is added to one axis.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+struct Added {
+    /// Pulses that are still due in this tick, and when.
+    left: u32,
+    times: Times,
+    /// Their direction.
+    sign: i8,
+    /// A pulse, at most, that would turn the axis round and waits.
+    owed: i8,
+    /// Ticks that it has waited.
+    waited: u8,
+}
+
+impl Added {
+    const NONE: Self = Self { left: 0, times: Times { time: 0, spacing: 0 }, sign: 0, owed: 0, waited: 0 };
+
+    fn begin(&mut self, pulses: i32) {
+        self.left = pulses.unsigned_abs();
+        self.sign = if pulses < 0 { -1 } else { 1 };
+        if let Some(spacing) = (TICK_CLOCKS << FRACTION).checked_div(self.left) {
+            self.times = Times { time: spacing / 2, spacing };
+        }
+    }
+
+    /// When the next one is due, if any.
+    fn due(&self) -> Option<u32> {
+        (self.left > 0).then_some(self.times.time)
+    }
+
+    /// Takes the next one.
+    fn take(&mut self) -> i8 {
+        self.left = self.left.wrapping_sub(1);
+        self.times.time = self.times.time.wrapping_add(self.times.spacing);
+        self.sign
+    }
+
+    /// A pulse that is due (or none): what is to be made now of an axis that faces plus or not, at most two pulses.
+    fn offer(&mut self, pulse: i8, faces_plus: bool) -> i8 {
+        let owed = self.owed.wrapping_add(pulse);
+        if owed == 0 || (owed > 0) == faces_plus || owed.unsigned_abs() > 1 {
+            (self.owed, self.waited) = (0, 0);
+            owed
+        } else {
+            self.owed = owed;
+            0
+        }
+    }
+
+    /// A tick is over: what must not wait longer.
+    fn patience(&mut self) -> i8 {
+        if self.owed == 0 {
+            return 0;
+        }
+        self.waited = self.waited.saturating_add(1);
+        if self.waited < PATIENCE {
+            return 0;
+        }
+        self.waited = 0;
+        core::mem::take(&mut self.owed)
+    }
+}
+
+/// What is added to the program of one lathe.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Superposed {
+    x: Added,
+    z: Added,
+    live: bool,
+}
+
+impl Superposed {
+    /// Nothing.
+    pub const fn new() -> Self {
+        Self { x: Added::NONE, z: Added::NONE, live: false }
+    }
+
+    /// Adds these signed pulses of X and Z in the tick that begins.
+    pub fn begin(&mut self, x: i32, z: i32) {
+        self.x.begin(x);
+        self.z.begin(z);
+        self.live |= x != 0 || z != 0;
+    }
+
+    /// Whether steps have to be made by [`step`](Self::step) and not past it.
+    #[inline]
+    pub const fn is_live(&self) -> bool {
+        self.live
+    }
+
+    /// How many of `count` steps of the program, due at `times`, come before anything is added and touch nothing that is
+    /// owed: those may be made past it.
+    #[cold]
+    pub fn room(&self, times: &Times, count: u32) -> u32 {
+        if self.x.owed != 0 || self.z.owed != 0 {
+            return 0;
+        }
+        let Some(next) = self.next() else { return count };
+        let Some(before) = next.checked_sub(times.time).and_then(|room| room.checked_sub(1)) else { return 0 };
+        before.checked_div(times.spacing).map_or(0, |more| more.saturating_add(1)).min(count)
+    }
+
+    /// When the next one is due.
+    fn next(&self) -> Option<u32> {
+        match (self.x.due(), self.z.due()) {
+            (Some(x), Some(z)) => Some(x.min(z)),
+            (x, z) => x.or(z),
+        }
+    }
+
+    /// Makes a step of the program, due at `clock`, after what is due until then.
+    #[cold]
+    pub fn step(&mut self, clock: u32, step: Step, shaper: &mut Shaper, out: &mut impl Train) {
+        self.until(clock, shaper, out);
+        self.offer(clock, step, step, shaper, out);
+    }
+
+    /// Makes what the tick still owes.
+    #[cold]
+    pub fn end(&mut self, shaper: &mut Shaper, out: &mut impl Train) {
+        self.until(TICK_CLOCKS, shaper, out);
+        let (x, z) = (self.x.patience(), self.z.patience());
+        self.make(LATE, [x, z], Step { x: 0, z: 0 }, shaper, out);
+        self.live = self.x.owed != 0 || self.z.owed != 0;
+    }
+
+    /// Makes what is due until `clock`.
+    fn until(&mut self, clock: u32, shaper: &mut Shaper, out: &mut impl Train) {
+        while let Some(next) = self.next() {
+            let due = next >> FRACTION;
+            if due > clock {
+                return;
+            }
+            let x = if self.x.due() == Some(next) { self.x.take() } else { 0 };
+            let z = if self.z.due() == Some(next) { self.z.take() } else { 0 };
+            self.offer(due, Step { x, z }, Step { x: 0, z: 0 }, shaper, out);
+        }
+    }
+
+    /// Offers a step to both axes and makes what they make of it; `program` of it is the program's.
+    fn offer(&mut self, clock: u32, step: Step, program: Step, shaper: &mut Shaper, out: &mut impl Train) {
+        let x = if step.x == 0 { 0 } else { self.x.offer(step.x, shaper.faces_plus(Axis::X)) };
+        let z = if step.z == 0 { 0 } else { self.z.offer(step.z, shaper.faces_plus(Axis::Z)) };
+        self.make(clock, [x, z], program, shaper, out);
+    }
+
+    /// Makes so many pulses of X and Z, one of each at a time, and tells in what they differ from the program's step.
+    fn make(&self, clock: u32, pulses: [i8; 2], program: Step, shaper: &mut Shaper, out: &mut impl Train) {
+        let ([mut x, mut z], mut program) = (pulses, program);
+        loop {
+            let made = Step { x: x.signum(), z: z.signum() };
+            if made.x != 0 || made.z != 0 {
+                shaper.step(clock, made.x, made.z, out);
+            }
+            if made != program {
+                out.superposed(shaper.began().max(clock.cast_signed()), program, made);
+            }
+            (x, z, program) = (x.wrapping_sub(made.x), z.wrapping_sub(made.z), Step { x: 0, z: 0 });
+            if x == 0 && z == 0 {
+                return;
+            }
+        }
+    }
+}
+
+/// When a pulse is made that nothing has cancelled: towards the tick's end, but with time for its events before it.
+const LATE: u32 = TICK_CLOCKS - TICK_CLOCKS / 8;
+
+impl Default for Superposed {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,315 @@
+//! Compensation: what a motor has to go beyond the program so that the slide is where the program says.
+//!
+//! The program's position stays as it is; the motor goes to program + compensation. For each axis it is the sum of
+//! [`backlash`], [`pitch`] and [`thermal`], a function of the program's position, of the way it came there, and of the
+//! temperature: nothing is summed up, so nothing drifts. In each tick a
+//! [`Follower`] moves what is given towards that sum, within
+//! a share of the axis's speed and acceleration that the program leaves free; the whole pulses it moves by are
+//! [superposed](crate::channel::superposed) on the program's.
+//!
+//! Amounts are in pulses with [`FRACTION`] fraction bits. Where the position is made known (when the channel is made or
+//! set up anew) the tool is taken to stand right: the compensation of that place counts as given, and nothing moves.
+
+pub mod backlash;
+pub mod pitch;
+pub mod thermal;
+
+use crate::channel::follower::{Follower, Pace};
+use crate::config::{AxisLimits, FRACTION_BITS, Machine};
+use crate::math::to_i64;
+use crate::units::{Axis, Lattice, Length, PulseSize};
+use backlash::Backlash;
+use pitch::{Pitch, PitchTable};
+use thermal::Thermal;
+
+/// Fraction bits of a compensation in pulses.
+pub const FRACTION: u32 = 20;
+
+/// One pulse.
+pub const PULSE: i64 = 1 << FRACTION;
+
+/// What part of an axis's acceleration its compensation gets, and the program leaves: a fifth.
+pub const ACCEL_SHARE: u32 = 5;
+
+/// What part of an axis's speed its compensation gets, and the program leaves: a 16th.
+pub const SPEED_SHARE: u32 = 16;
+
+/// What is to be compensated on one axis. All zero: nothing.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Config {
+    /// Play of screw and nut, nm, at most [`Config::MAX_BACKLASH_NM`].
+    pub backlash_nm: u32,
+    /// Travel in the new direction over which the backlash is taken up, nm; a pulse at least.
+    pub backlash_distance_nm: u32,
+    /// Whether the pitch error table is in force.
+    pub pitch: bool,
+    /// How much longer the screw gets, nm a metre a kelvin, at most [`Config::MAX_THERMAL`].
+    pub thermal: u32,
+    /// The place that does not move when the screw gets longer.
+    pub thermal_origin: Length,
+}
+
+impl Config {
+    /// Largest backlash, 5 mm.
+    pub const MAX_BACKLASH_NM: u32 = 5_000_000;
+    /// Largest expansion, 100 um a metre a kelvin.
+    pub const MAX_THERMAL: u32 = 100_000;
+
+    /// Whether there is anything to compensate.
+    pub const fn is_on(&self) -> bool {
+        self.backlash_nm > 0 || self.pitch || self.thermal > 0
+    }
+
+    /// Brings the figures of one axis into pulses and leaves its share of the limits.
+    fn plan(&self, limits: &mut AxisLimits) -> AxisPlan {
+        if !self.is_on() {
+            return AxisPlan { pulse: limits.pulse, ..AxisPlan::default() };
+        }
+        let pulse = limits.pulse;
+        let speed = limits.speed / SPEED_SHARE;
+        let accel = limits.accel / ACCEL_SHARE;
+        limits.speed = limits.speed.wrapping_sub(speed);
+        limits.accel = limits.accel.wrapping_sub(accel);
+        // nm a tick with 12 fraction bits
+        let rate = |rate: u32| pulses(pulse, i128::from(rate), FRACTION_BITS).max(1);
+        let distance = pulses(pulse, i128::from(self.backlash_distance_nm), 0) >> FRACTION;
+        let backlash = pulses(pulse, i128::from(self.backlash_nm.min(Self::MAX_BACKLASH_NM)), 0);
+        AxisPlan {
+            on: true,
+            pulse,
+            pitch: self.pitch,
+            backlash,
+            distance: i32::try_from(distance).unwrap_or(i32::MAX).max(1),
+            thermal: self.thermal.min(Self::MAX_THERMAL),
+            origin: pulse.nearest(self.thermal_origin),
+            pace: Pace { speed: rate(speed), accel: rate(accel) },
+        }
+    }
+}
+
+/// A length in nm with `bits` fraction bits, as pulses with [`FRACTION`] fraction bits, rounded down.
+fn pulses(pulse: PulseSize, nm: i128, bits: u32) -> i64 {
+    let scaled = nm.wrapping_mul(i128::from(pulse.denominator())).wrapping_shl(FRACTION.wrapping_sub(bits));
+    to_i64(scaled.checked_div_euclid(i128::from(pulse.numerator())).unwrap_or(0))
+}
+
+/// The compensation of one axis, checked and converted.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct AxisPlan {
+    /// Anything is compensated.
+    on: bool,
+    pitch: bool,
+    pulse: PulseSize,
+    /// Pulses.
+    backlash: i64,
+    /// Whole pulses, at least 1.
+    distance: i32,
+    /// nm a metre a kelvin.
+    thermal: u32,
+    /// Whole pulses.
+    origin: i32,
+    pace: Pace,
+}
+
+impl Default for AxisPlan {
+    fn default() -> Self {
+        Self {
+            on: false,
+            pitch: false,
+            pulse: PulseSize::ONE_MICROMETRE,
+            backlash: 0,
+            distance: 1,
+            thermal: 0,
+            origin: 0,
+            pace: Pace::default(),
+        }
+    }
+}
+
+/// The compensation of a machine. The default is none.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Plan {
+    x: AxisPlan,
+    z: AxisPlan,
+    temperatures: Temperatures,
+}
+
+/// Temperatures, thousandths of a degree Celsius.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Temperatures {
+    /// At which the screws are right.
+    pub reference: i32,
+    /// Which the screws have when the cycle starts; [`Compensation::set_temperature`] tells another one later.
+    pub screws: i32,
+}
+
+impl Plan {
+    /// Whether anything is compensated.
+    pub const fn is_on(&self) -> bool {
+        self.x.on || self.z.on
+    }
+}
+
+impl Machine {
+    /// The same machine compensated: the program's share of an axis's speed and acceleration gets smaller by what the
+    /// compensation needs.
+    #[must_use]
+    pub fn compensated(mut self, x: &Config, z: &Config, temperatures: Temperatures) -> Self {
+        self.compensation = Plan { x: x.plan(&mut self.x), z: z.plan(&mut self.z), temperatures };
+        self
+    }
+}
+
+/// The compensation of one axis at work.
+#[derive(Clone, Debug)]
+struct AxisCompensation {
+    plan: AxisPlan,
+    backlash: Backlash,
+    pitch: Pitch,
+    thermal: Thermal,
+    follower: Follower,
+    /// What is to be given at the program's position.
+    target: i64,
+}
+
+impl AxisCompensation {
+    const fn new(plan: AxisPlan) -> Self {
+        Self {
+            plan,
+            backlash: Backlash::new(plan.backlash, plan.distance),
+            pitch: Pitch::new(plan.pulse),
+            thermal: Thermal::new(plan.thermal, plan.origin),
+            follower: Follower::new(),
+            target: 0,
+        }
+    }
+
+    /// What is to be given at `position`.
+    fn at(&mut self, position: i32) -> i64 {
+        let pitch = if self.plan.pitch { self.pitch.at(position) } else { 0 };
+        self.backlash.amount().wrapping_add(pitch).wrapping_add(self.thermal.at(position))
+    }
+
+    /// Stands at `position`, which counts as right.
+    fn stand(&mut self, position: i32) {
+        self.target = self.at(position);
+        self.follower = Follower::at(self.target);
+    }
+
+    fn tick(&mut self, moved: i32, position: i32) -> i32 {
+        if !self.plan.on {
+            return 0;
+        }
+        self.backlash.moved(moved);
+        self.thermal.tick();
+        self.target = self.at(position);
+        self.follower.follow(self.target, &self.plan.pace)
+    }
+
+    /// Whether all is given but for less than a pulse, and the follower may stop.
+    const fn settled(&self) -> bool {
+        !self.plan.on || self.follower.is_near(self.target, PULSE, &self.plan.pace)
+    }
+}
+
+/// The compensation of a lathe at work.
+#[derive(Clone, Debug)]
+pub struct Compensation {
+    on: bool,
+    x: AxisCompensation,
+    z: AxisCompensation,
+    /// The program's position at the last tick.
+    at: Lattice,
+    temperatures: Temperatures,
+}
+
+impl Compensation {
+    /// Of a machine that stands at `position`, which counts as right.
+    pub fn new(plan: &Plan, position: Lattice) -> Self {
+        let mut new = Self {
+            on: plan.is_on(),
+            x: AxisCompensation::new(plan.x),
+            z: AxisCompensation::new(plan.z),
+            at: position,
+            temperatures: plan.temperatures,
+        };
+        new.heat(true);
+        new.stand(position);
+        new
+    }
+
+    /// Goes on with other figures, standing at `position`, which counts as right. Tables are kept.
+    pub fn configure(&mut self, plan: &Plan, position: Lattice) {
+        for (axis, plan) in [(&mut self.x, plan.x), (&mut self.z, plan.z)] {
+            axis.plan = plan;
+            axis.backlash.configure(plan.backlash, plan.distance);
+            axis.pitch.configure(plan.pulse);
+            axis.thermal.configure(plan.thermal, plan.origin);
+        }
+        self.on = plan.is_on();
+        self.temperatures = plan.temperatures;
+        self.at = position;
+        self.heat(true);
+        self.stand(position);
+    }
+
+    /// Puts a pitch error table in the place of an axis's last one; the machine stands at `position`, which counts as
+    /// right.
+    pub fn set_pitch_table(&mut self, axis: Axis, table: &PitchTable, position: Lattice) {
+        match axis {
+            Axis::X => self.x.pitch.set(table),
+            Axis::Z => self.z.pitch.set(table),
+        }
+        self.stand(position);
+    }
+
+    /// Sets the temperature of the screws, thousandths of a degree Celsius; it acts slowly or at once.
+    pub fn set_temperature(&mut self, temperature: i32, slowly: bool) {
+        self.temperatures.screws = temperature;
+        self.heat(!slowly);
+    }
+
+    fn heat(&mut self, at_once: bool) {
+        let warmer = self.temperatures.screws.saturating_sub(self.temperatures.reference);
+        for axis in [&mut self.x, &mut self.z] {
+            axis.thermal.heat(warmer, at_once);
+        }
+    }
+
+    fn stand(&mut self, position: Lattice) {
+        self.x.stand(position.x);
+        self.z.stand(position.z);
+    }
+
+    /// Whether anything is compensated.
+    #[inline]
+    pub const fn is_on(&self) -> bool {
+        self.on
+    }
+
+    /// Whether each motor stands where it has to, but for less than a pulse.
+    pub const fn settled(&self) -> bool {
+        self.x.settled() && self.z.settled()
+    }
+
+    /// The pulses that each axis has to go in this tick beyond the program, which has got to `position`.
+    pub fn tick(&mut self, position: Lattice) -> (i32, i32) {
+        let moved = (position.x.wrapping_sub(self.at.x), position.z.wrapping_sub(self.at.z));
+        self.at = position;
+        (self.x.tick(moved.0, position.x), self.z.tick(moved.1, position.z))
+    }
+
+    /// Stops where it is, from any speed.
+    pub const fn stop(&mut self) {
+        self.x.follower.stop();
+        self.z.follower.stop();
+    }
+
+    /// Pulses that the motor of an axis is due beyond the program since the position was last made known.
+    pub const fn given(&self, axis: Axis) -> i32 {
+        match axis {
+            Axis::X => self.x.follower.pulses(),
+            Axis::Z => self.z.follower.pulses(),
+        }
+    }
+}
