@@ -6,6 +6,7 @@
 use core::fmt;
 
 use feature_editor::codes::{Number, Settings};
+use interp_core::compensation::{self, Temperatures};
 use interp_core::config::{AxisConfig, Config, ConfigError, Machine};
 use interp_core::curve::method::Method;
 use interp_core::units::{Axis, Feedrate, Length, Point, PulseSize};
@@ -54,6 +55,10 @@ const fn number(scale: u32, least: i64, most: i64) -> Kind {
 const FEED: Kind = number(1_000_000, 10_000, 30_000_000_000);
 const ACCEL: Kind = number(1_000, AxisConfig::ACCEL_RANGE.0 as i64, AxisConfig::ACCEL_RANGE.1 as i64);
 const JUMP: Kind = number(1_000, AxisConfig::JUMP_RANGE.0 as i64, AxisConfig::JUMP_RANGE.1 as i64);
+const BACKLASH: Kind = number(1_000, 0, compensation::Config::MAX_BACKLASH_NM as i64);
+const EXPANSION: Kind = number(1_000, 0, compensation::Config::MAX_THERMAL as i64);
+const POSITION: Kind = number(1_000_000, -(Length::LIMIT_NM as i64), Length::LIMIT_NM as i64);
+const TEMPERATURE: Kind = number(1_000, -50_000, 150_000);
 const NANOSECONDS: Kind = number(1, 100, 200_000);
 
 const fn definition(
@@ -87,7 +92,17 @@ mod index {
     pub(super) const BLOCK_DELETE: usize = 31;
     pub(super) const START: usize = 32;
     pub(super) const OPTIONAL_STOP: usize = 33;
-    pub(super) const COUNT: usize = 34;
+    /// Of X; those of Z follow.
+    pub(super) const COMPENSATION: usize = 34;
+    pub(super) const BACKLASH: usize = 0;
+    pub(super) const BACKLASH_DISTANCE: usize = 1;
+    pub(super) const PITCH_TABLE: usize = 2;
+    pub(super) const THERMAL: usize = 3;
+    pub(super) const THERMAL_ORIGIN: usize = 4;
+    pub(super) const AXIS_COMPENSATION: usize = 5;
+    pub(super) const THERMAL_REFERENCE: usize = 44;
+    pub(super) const TEMPERATURE: usize = 45;
+    pub(super) const COUNT: usize = 46;
 }
 
 /// Methods that this build has, in the order of [`Method::ALL`].
@@ -133,6 +148,18 @@ pub static DEFINITIONS: [Definition; index::COUNT] = [
     definition("block_delete", "", Kind::Switch, "true", "lines that begin with / are skipped"),
     definition("start", "mm", Kind::Place, "0,0", "where the tool is when the program starts: X (radius), Z"),
     definition("optional_stop", "", Kind::Switch, "false", "M1 stops as M0 does"),
+    definition("x.backlash_um", "um", BACKLASH, "0", "play of screw and nut that the control takes up (radius)"),
+    definition("x.backlash_distance_um", "um", BACKLASH, "5", "travel after a reversal over which it is taken up"),
+    definition("x.pitch_table", "", Kind::Switch, "false", "the table of pitch errors is in force"),
+    definition("x.thermal_um_per_m_k", "um/m/K", EXPANSION, "0", "how much longer the warm screw gets"),
+    definition("x.thermal_origin_mm", "mm", POSITION, "0", "place that stays where it is when the screw gets longer"),
+    definition("z.backlash_um", "um", BACKLASH, "0", "play of screw and nut that the control takes up"),
+    definition("z.backlash_distance_um", "um", BACKLASH, "5", "travel after a reversal over which it is taken up"),
+    definition("z.pitch_table", "", Kind::Switch, "false", "the table of pitch errors is in force"),
+    definition("z.thermal_um_per_m_k", "um/m/K", EXPANSION, "0", "how much longer the warm screw gets"),
+    definition("z.thermal_origin_mm", "mm", POSITION, "0", "place that stays where it is when the screw gets longer"),
+    definition("thermal_reference_c", "C", TEMPERATURE, "20", "temperature at which the screws are right"),
+    definition("temperature_c", "C", TEMPERATURE, "20", "temperature of the screws, as measured"),
 ];
 
 /// A value as held.
@@ -281,7 +308,12 @@ impl Parameters {
     /// [`ConfigError`] where they contradict each other.
     pub fn machine(&self) -> Result<Machine, ConfigError> {
         let machine = self.config().check()?;
-        Ok(Machine { method: self.method(), ..machine })
+        let (x, z) = (self.compensation(Axis::X), self.compensation(Axis::Z));
+        let temperatures = Temperatures {
+            reference: self.temperature(index::THERMAL_REFERENCE),
+            screws: self.temperature(index::TEMPERATURE),
+        };
+        Ok(Machine { method: self.method(), ..machine }.compensated(&x, &z, temperatures))
     }
 
     /// How steps follow a curve.
@@ -295,6 +327,38 @@ impl Parameters {
     /// The machine as typed, unchecked.
     pub fn config(&self) -> Config {
         Config { x: self.axis(Axis::X), z: self.axis(Axis::Z), event_min_ns: self.small(index::EVENT_MIN) }
+    }
+
+    /// What is to be compensated on an axis.
+    pub fn compensation(&self, axis: Axis) -> compensation::Config {
+        let first = index::COMPENSATION.wrapping_add(match axis {
+            Axis::X => 0,
+            Axis::Z => index::AXIS_COMPENSATION,
+        });
+        let small = |offset: usize| self.small(first.wrapping_add(offset));
+        compensation::Config {
+            backlash_nm: small(index::BACKLASH),
+            backlash_distance_nm: small(index::BACKLASH_DISTANCE),
+            pitch: self.switch(first.wrapping_add(index::PITCH_TABLE)),
+            thermal: small(index::THERMAL),
+            thermal_origin: Length::from_nm(self.number(first.wrapping_add(index::THERMAL_ORIGIN))).unwrap_or_default(),
+        }
+    }
+
+    /// Puts the table of pitch errors of an axis in force, or out of it.
+    pub fn set_pitch(&mut self, axis: Axis, on: bool) {
+        let at = index::COMPENSATION.wrapping_add(index::PITCH_TABLE).wrapping_add(match axis {
+            Axis::X => 0,
+            Axis::Z => index::AXIS_COMPENSATION,
+        });
+        if let Some(value) = self.values.get_mut(at) {
+            *value = Value::Switch(on);
+        }
+    }
+
+    /// Thousandths of a degree.
+    fn temperature(&self, at: usize) -> i32 {
+        i32::try_from(self.number(at)).unwrap_or(20_000)
     }
 
     /// How program text is read.

@@ -12,9 +12,10 @@ pub mod train_queue;
 
 use interp_core::block::Block;
 use interp_core::channel::{Channel, Report, State};
+use interp_core::compensation::pitch::PitchTable;
 use interp_core::config::Machine;
 use interp_core::train::Train;
-use interp_core::units::Lattice;
+use interp_core::units::{Axis, Lattice};
 
 use crate::queue::Consumer;
 use alarm::{Alarm, Faults};
@@ -168,6 +169,21 @@ impl<'q> Foreground<'q> {
     /// What the board's outputs are to be now.
     pub const fn outputs(&self) -> Outputs {
         self.outputs
+    }
+
+    /// Puts a pitch error table in the place of an axis's last one. False, and nothing changes, while a cycle runs.
+    pub fn set_pitch_table(&mut self, axis: Axis, table: &PitchTable) -> bool {
+        self.channel.set_pitch_table(axis, table)
+    }
+
+    /// Sets the temperature of the screws, thousandths of a degree Celsius. While a cycle runs it acts slowly.
+    pub fn set_temperature(&mut self, temperature: i32) {
+        self.channel.set_temperature(temperature);
+    }
+
+    /// Pulses that the motor of an axis is due beyond the program since its position was made known.
+    pub const fn compensation(&self, axis: Axis) -> i32 {
+        self.channel.compensation(axis)
     }
 
     /// Where the last pulse planned leads.
