@@ -13,8 +13,12 @@ use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
 use handcnc::queue::Queue;
 use interp_core::block::Block;
 use interp_core::channel::{Report, State};
-use interp_core::config::Machine;
-use interp_core::train::Event;
+use interp_core::compensation::pitch::PitchTable;
+use interp_core::config::{Machine, TICK_CLOCKS};
+use interp_core::curve::Step;
+use interp_core::train::{Event, Train};
+use interp_core::units::Axis;
+use measure::{Added, PerAxis};
 
 use crate::program::{Lines, Program};
 
@@ -22,6 +26,9 @@ use crate::program::{Lines, Program};
 pub trait Observer {
     /// The background compiled an action, ahead of its execution; `blocks` is how many blocks it made.
     fn compiled(&mut self, _item: &Item, _blocks: usize) {}
+
+    /// In the tick that comes next the motors differ from the program so.
+    fn superposed(&mut self, _added: &[Added]) {}
 
     /// The foreground made a tick that belongs to a cycle.
     ///
@@ -44,6 +51,11 @@ impl<A: Observer, B: Observer> Observer for (&mut A, &mut B) {
     fn compiled(&mut self, item: &Item, blocks: usize) {
         self.0.compiled(item, blocks);
         self.1.compiled(item, blocks);
+    }
+
+    fn superposed(&mut self, added: &[Added]) {
+        self.0.superposed(added);
+        self.1.superposed(added);
     }
 
     fn tick(&mut self, events: &[u32], report: &Report) -> io::Result<()> {
@@ -168,6 +180,40 @@ impl Source {
     }
 }
 
+/// Records a tick.
+struct Recorder {
+    events: Vec<u32>,
+    /// In what the motors differ from the program; some may lie behind the tick's end.
+    added: Vec<Added>,
+}
+
+impl Recorder {
+    fn next_tick(&mut self) {
+        self.events.clear();
+        self.added.retain(|added| added.clock >= TICK_CLOCKS);
+        for added in &mut self.added {
+            added.clock -= TICK_CLOCKS;
+        }
+    }
+
+    fn of_this_tick(&self) -> &[Added] {
+        let count = self.added.iter().take_while(|added| added.clock < TICK_CLOCKS).count();
+        self.added.get(..count).unwrap_or_default()
+    }
+}
+
+impl Train for Recorder {
+    fn put(&mut self, event: Event) {
+        self.events.push(event.word());
+    }
+
+    fn superposed(&mut self, clock: i32, program: Step, made: Step) {
+        let clock = u32::try_from(clock).unwrap_or(0);
+        let moved = |step: Step| PerAxis { x: i32::from(step.x), z: i32::from(step.z) };
+        self.added.push(Added { clock, program: moved(program), motor: moved(made) });
+    }
+}
+
 /// Runs a program that [`check`] found good, from cycle start to its end. Programmed stops are passed by.
 ///
 /// `commands` are given before the tick of the cycle (from 0) that stands with each, in this order. A hold needs a
@@ -183,6 +229,22 @@ pub fn run(
     commands: &[(u64, Command)],
     observer: &mut impl Observer,
 ) -> io::Result<()> {
+    run_fitted(program, format, parameters, machine, &PerAxis::default(), commands, observer)
+}
+
+/// The same with tables of pitch errors.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn run_fitted(
+    program: &Program,
+    format: Format,
+    parameters: &Parameters,
+    machine: &Machine,
+    tables: &PerAxis<Option<PitchTable>>,
+    commands: &[(u64, Command)],
+    observer: &mut impl Observer,
+) -> io::Result<()> {
     let compiler = Compiler::new(parameters.settings(), format, machine);
     let position = compiler.lattice();
     let mut source = Source { lines: program.lines()?, compiler, ready: VecDeque::new(), line: 0, ended: false };
@@ -193,11 +255,16 @@ pub fn run(
     let mut commands = commands.iter().peekable();
     let mut cycle = 0_u64;
     let mut foreground = Foreground::new(machine, position, block_out, command_out);
+    for (axis, table) in [(Axis::X, &tables.x), (Axis::Z, &tables.z)] {
+        if let Some(table) = table {
+            foreground.set_pitch_table(axis, table);
+        }
+    }
     let full = || io::Error::other("the queue of commands is full");
     command_in.enqueue(Command::FeedOverride(parameters.feed_override())).map_err(|_| full())?;
     command_in.enqueue(Command::OptionalStop(parameters.optional_stop())).map_err(|_| full())?;
     command_in.enqueue(Command::Start).map_err(|_| full())?;
-    let mut events = Vec::with_capacity(1024);
+    let mut recorder = Recorder { events: Vec::with_capacity(1024), added: Vec::new() };
     let mut ticks = 0_u64;
     loop {
         while block_in.ready() {
@@ -209,10 +276,11 @@ pub fn run(
             observer.commanded(*command);
             command_in.enqueue(*command).map_err(|_| full())?;
         }
-        events.clear();
-        let report = foreground.tick(&mut |event: Event| events.push(event.word()));
+        recorder.next_tick();
+        let report = foreground.tick(&mut recorder);
         if report.in_cycle {
-            observer.tick(&events, &report)?;
+            observer.superposed(recorder.of_this_tick());
+            observer.tick(&recorder.events, &report)?;
             cycle += 1;
         }
         ticks += 1;
@@ -220,7 +288,7 @@ pub fn run(
             observer.progress(source.lines.bytes());
         }
         match report.state {
-            State::Ended | State::Idle => return finish(&mut foreground, observer, &mut events),
+            State::Ended | State::Idle => return finish(&mut foreground, observer, &mut recorder),
             State::Stopped => {
                 observer.stopped(report.line);
                 command_in.enqueue(Command::Start).map_err(|_| full())?;
@@ -231,11 +299,12 @@ pub fn run(
 }
 
 /// Two ticks more, so that the last pulse's falling edge is played, too.
-fn finish(foreground: &mut Foreground<'_>, observer: &mut impl Observer, events: &mut Vec<u32>) -> io::Result<()> {
+fn finish(foreground: &mut Foreground<'_>, observer: &mut impl Observer, recorder: &mut Recorder) -> io::Result<()> {
     for _ in 0..2 {
-        events.clear();
-        let report = foreground.tick(&mut |event: Event| events.push(event.word()));
-        observer.tick(events, &report)?;
+        recorder.next_tick();
+        let report = foreground.tick(recorder);
+        observer.superposed(recorder.of_this_tick());
+        observer.tick(&recorder.events, &report)?;
     }
     if foreground.starved() > 0 {
         return Err(io::Error::other(format!("the look-ahead lacked a block {} times", foreground.starved())));

@@ -44,6 +44,9 @@ struct Turn {
     /// One parameter; beats the machine file. `parameters` lists them.
     #[arg(long, value_name = "NAME=VALUE", value_parser = name_and_value)]
     set: Vec<(String, String)>,
+    /// Tables of pitch errors for the control, a line a point: axis, position in mm, error in um.
+    #[arg(long, value_name = "FILE.txt")]
+    pitch_table: Option<PathBuf>,
     /// Write every step: time in ns, position in pulses.
     #[arg(long, value_name = "FILE.csv")]
     trace: Option<PathBuf>,
@@ -135,6 +138,7 @@ fn main() -> ExitCode {
             },
             machine: options.machine,
             set: options.set,
+            pitch_table: options.pitch_table,
             trace: options.trace,
             report: options.report,
             picture: options.picture,

@@ -25,6 +25,10 @@ pub struct Run {
     pub lost_pulses: Axes<u64>,
     /// Greatest part of its pull-out torque that each motor was asked for.
     pub motor_load: Axes<f64>,
+    /// The control compensates an axis.
+    pub compensated: bool,
+    /// How far the slides were off the program at most: Z and X, mm.
+    pub slides_off: [f64; 2],
     /// Warnings, as text.
     pub warnings: Vec<String>,
 }
@@ -211,6 +215,15 @@ pub fn summary(name: &str, report: &Report, worked: &Worked, run: &Run) -> Strin
         lost.x,
         lost.z
     );
+    let [z, x] = run.slides_off.map(|mm| mm * 1e3);
+    if run.compensated || x.max(z) >= 0.01 {
+        let beyond = if run.compensated {
+            format!("; at the end the motors are X {}, Z {} pulses beyond it", report.beyond.x, report.beyond.z)
+        } else {
+            String::new()
+        };
+        let _ = writeln!(text, "  slides      off the program by X {x:.2} um, Z {z:.2} um at most{beyond}");
+    }
     text
 }
 

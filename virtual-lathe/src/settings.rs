@@ -9,6 +9,7 @@ use interp_core::units::PulseSize;
 use machine::{Axes, Control, table};
 
 use crate::machine_file;
+use crate::pitch_table::{self, Tables};
 
 /// The tables of the desktop's models, in the order of the list.
 pub const TABLES: &[&[figures::Definition]] = &[&table::CROSS_SLIDE, &table::CARRIAGE, &table::OTHERS, &stock::FIGURES];
@@ -20,6 +21,8 @@ pub struct Settings {
     pub parameters: Parameters,
     /// Figures of the desktop's models.
     pub figures: Figures,
+    /// Tables of pitch errors that the control is given.
+    pub pitch: Tables,
 }
 
 /// Why settings were refused.
@@ -33,7 +36,7 @@ pub enum Refusal {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { parameters: Parameters::new(), figures: Figures::new(TABLES) }
+        Self { parameters: Parameters::new(), figures: Figures::new(TABLES), pitch: Tables::default() }
     }
 }
 
@@ -69,6 +72,27 @@ impl Settings {
             Err(error) => errors.push(format!("error: {error}")),
         }
         Err(Refusal::Wrong(errors))
+    }
+
+    /// The same with a file of pitch error tables, which are in force unless a parameter says otherwise.
+    ///
+    /// # Errors
+    /// [`Refusal`], with all that is wrong and not only the first of it.
+    pub fn read_fitted(
+        file: Option<&Path>,
+        set: &[(String, String)],
+        pitch: Option<&Path>,
+    ) -> Result<(Self, Machine), Refusal> {
+        let Some(path) = pitch else { return Self::read(file, set) };
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|error| Refusal::Unreadable(format!("{name}: {error}")))?;
+        let tables = pitch_table::read(&name, &text).map_err(Refusal::Wrong)?;
+        let on = |axis: &str, table: bool| table.then(|| (format!("{axis}.pitch_table"), "true".to_owned()));
+        let own = on("x", tables.x.is_some()).into_iter().chain(on("z", tables.z.is_some()));
+        let set: Vec<(String, String)> = own.chain(set.iter().cloned()).collect();
+        let (mut settings, machine) = Self::read(file, &set)?;
+        settings.pitch = tables;
+        Ok((settings, machine))
     }
 
     /// Sets a parameter from text.

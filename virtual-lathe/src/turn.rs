@@ -8,6 +8,7 @@ use feature_editor::codes::{Format, Item};
 use handcnc::background::parameters::Parameters;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use interp_core::config::Machine;
+use interp_core::units::Axis;
 use stock::{ContourError, Part, SetupError, Tool};
 
 use crate::examples::{EXAMPLES, Example};
@@ -44,6 +45,8 @@ pub struct Job {
     pub machine: Option<PathBuf>,
     /// Parameters by name.
     pub set: Vec<(String, String)>,
+    /// Tables of pitch errors for the control.
+    pub pitch_table: Option<PathBuf>,
     /// Where the trace goes.
     pub trace: Option<PathBuf>,
     /// Where the report goes.
@@ -143,7 +146,7 @@ fn run(job: &Job) -> Result<(), Failure> {
     };
     let pictures = pictures(job, &program);
     let mut places = Places::default();
-    for input in job.file.iter().chain(&job.machine) {
+    for input in job.file.iter().chain(&job.machine).chain(&job.pitch_table) {
         places.input(input);
     }
     let others = [&job.error_picture, &job.motion_picture, &job.animate].into_iter().flatten();
@@ -200,7 +203,7 @@ fn perform(program: &Program, job: &Job, settings: &Settings, machine: &Machine)
     let watch = Watch::new(parameters, machine, chooser, trace, bar)?;
     let mut watch = watch.with_work(Motors::new(model), clamped, job.animate.is_some());
     let began = Instant::now();
-    lathe::run(program, format, parameters, machine, &[], &mut watch)?;
+    lathe::run_fitted(program, format, parameters, machine, &settings.pitch, &[], &mut watch)?;
     let wall = began.elapsed();
     watch.bar().finish_and_clear();
     if let Some((count, line)) = watch.stops() {
@@ -217,7 +220,16 @@ fn perform(program: &Program, job: &Job, settings: &Settings, machine: &Machine)
     warnings.extend(motors.map(Motors::warnings).unwrap_or_default());
     let lost_pulses = motors.map(Motors::lost_pulses).unwrap_or_default();
     let motor_load = motors.map(Motors::peaks).unwrap_or_default();
-    let run = Run { blocks: watched.blocks, wall, lost_pulses, motor_load, warnings };
+    let compensated = parameters.compensation(Axis::X).is_on() || parameters.compensation(Axis::Z).is_on();
+    let run = Run {
+        blocks: watched.blocks,
+        wall,
+        lost_pulses,
+        motor_load,
+        compensated,
+        slides_off: watched.slides_off,
+        warnings,
+    };
     Ok(Finished { name, watched, run, tool, pulse })
 }
 
@@ -252,7 +264,7 @@ fn parameters(job: &Job, example: Option<&Example>) -> Result<(Settings, Machine
     let own =
         example.into_iter().flat_map(|example| example.set).map(|(name, value)| ((*name).into(), (*value).into()));
     let set: Vec<(String, String)> = own.chain(job.set.iter().cloned()).collect();
-    Settings::read(job.machine.as_deref(), &set).map_err(|refusal| match refusal {
+    Settings::read_fitted(job.machine.as_deref(), &set, job.pitch_table.as_deref()).map_err(|refusal| match refusal {
         Refusal::Unreadable(message) => Failure::Unusable(message),
         Refusal::Wrong(errors) => {
             for error in &errors {

@@ -11,7 +11,7 @@ use interp_core::channel::{self, State};
 use interp_core::config::{AxisConfig, Config, Machine};
 use interp_core::curve::method::Method;
 use interp_core::units::{Axis, Point, Sense};
-use measure::{Checker, Limits, Motion, PerAxis, PulseEquivalent, Report, Setup, Shape};
+use measure::{Added, Checker, Limits, Motion, PerAxis, PulseEquivalent, Report, Setup, Shape};
 use stock::Clamped;
 
 use crate::insets::{self, Chooser};
@@ -27,6 +27,8 @@ const PATH_POINTS: usize = 20_000;
 /// Watches a run.
 pub struct Watch {
     checker: Checker,
+    /// In what the motors differ from the program in this tick.
+    added: Vec<Added>,
     /// Programmed position of the action compiled last.
     at: Point,
     /// Lines compiled ahead, with the kind of their motion.
@@ -38,6 +40,8 @@ pub struct Watch {
     insets: Vec<Inset>,
     trace: Option<Pending>,
     motors: Option<Motors>,
+    /// The machine's slides, how far they were off the program at most: Z and X, mm.
+    slides_off: [f64; 2],
     work: Work,
     lattice: [i32; 2],
     blocks: u64,
@@ -66,6 +70,8 @@ pub struct Watched {
     pub worked: Worked,
     /// The machine as the run left it, if one followed.
     pub motors: Option<Motors>,
+    /// How far its slides were off the program at most, at the end of a tick: Z and X, mm.
+    pub slides_off: [f64; 2],
 }
 
 impl Watch {
@@ -84,9 +90,12 @@ impl Watch {
         let start = parameters.start();
         let (x, z) = (machine.x.pulse.nearest(start.x), machine.z.pulse.nearest(start.z));
         let mut checker = Checker::new(setup(parameters, machine)).map_err(io::Error::other)?;
+        let compensated = |axis| parameters.compensation(axis).is_on();
+        checker = checker.compensated(PerAxis { x: compensated(Axis::X), z: compensated(Axis::Z) });
         checker.override_percent(u32::from(parameters.feed_override()));
         let mut watch = Self {
             checker,
+            added: Vec::new(),
             at: start,
             kinds: VecDeque::new(),
             kind: Kind::Rapid,
@@ -95,6 +104,7 @@ impl Watch {
             insets: chooser.insets(pulse),
             trace,
             motors: None,
+            slides_off: [0.0; 2],
             work: Work::new(None, pulse, [z, x], false),
             lattice: [z, x],
             blocks: 0,
@@ -138,8 +148,8 @@ impl Watch {
 
     /// Ends the measurement.
     pub fn finish(self) -> Watched {
-        let Self { checker, thinner, insets, trace, motors, work, blocks, .. } = self;
-        Watched { report: checker.finish(), thinner, insets, trace, blocks, worked: work.finish(), motors }
+        let Self { checker, thinner, insets, trace, motors, slides_off, work, blocks, .. } = self;
+        Watched { report: checker.finish(), thinner, insets, trace, blocks, worked: work.finish(), motors, slides_off }
     }
 }
 
@@ -172,6 +182,11 @@ impl Observer for Watch {
         self.at = end;
     }
 
+    fn superposed(&mut self, added: &[Added]) {
+        self.added.clear();
+        self.added.extend(added);
+    }
+
     fn tick(&mut self, events: &[u32], report: &channel::Report) -> io::Result<()> {
         while self.kinds.front().is_some_and(|(line, _)| *line <= report.line) {
             self.kind = self.kinds.pop_front().map_or(self.kind, |(_, kind)| kind);
@@ -180,7 +195,7 @@ impl Observer for Watch {
         let (thinner, insets) = (&mut self.thinner, &mut self.insets);
         let mut written = Ok(());
         let (trace, lattice) = (&mut self.trace, &mut self.lattice);
-        self.checker.tick_traced(events, &mut |clocks, x, z| {
+        self.checker.tick_added(events, &self.added, &mut |clocks, x, z| {
             thinner.push(kind, [f64::from(z) * pulse[0], f64::from(x) * pulse[1]]);
             insets::visit(insets, z, x);
             *lattice = [z, x];
@@ -191,7 +206,15 @@ impl Observer for Watch {
         let work = &mut self.work;
         // what is cut is where the slides really are
         if let Some(motors) = &mut self.motors {
-            motors.play(events, report.line, &mut |place| work.step(place, kind, report.line));
+            let mut at = None;
+            motors.play(events, report.line, &mut |place| {
+                at = Some([place.z_nm * 1e-6, place.x_nm * 1e-6]);
+                work.step(place, kind, report.line);
+            });
+            let program = lattice.iter().zip(self.pulse).map(|(pulses, pulse)| f64::from(*pulses) * pulse);
+            for ((off, at), program) in self.slides_off.iter_mut().zip(at.into_iter().flatten()).zip(program) {
+                *off = off.max((at - program).abs());
+            }
         }
         work.tick(*lattice, kind, report.speed == 0);
         let held = matches!(report.state, State::Holding) && report.speed == 0;

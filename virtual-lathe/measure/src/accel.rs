@@ -50,6 +50,10 @@ const FAKED_UNEVEN: i64 = 4;
 /// What it fakes beyond that where an axis may turn round at a joint.
 const FAKED_TURNING: i64 = 2;
 
+/// What a pulse fakes that is added to the program's: its rounding, and that it may be owed for a while. Half of it counts
+/// in a distance.
+const FAKED_ADDED: i64 = 2;
+
 /// What holds at a boundary.
 #[derive(Copy, Clone, Debug, Default)]
 struct Boundary {
@@ -59,6 +63,8 @@ struct Boundary {
     ended: u32,
     /// Steps of one axis alone before this boundary: X and Z count those that are not theirs.
     without: PerAxis<u32>,
+    /// Steps before this boundary in which motor and program differ.
+    added: u32,
 }
 
 /// Bounds of an axis for windows of `ticks`.
@@ -138,6 +144,7 @@ impl Watch {
                 (false, true) => 0,
                 (false, false) => FAKED_MINOR,
             };
+            let minor = if first.added == last.added { minor } else { minor + FAKED_ADDED };
             let travel = (end - centre).abs();
             if travel > bounds.travel + minor / 2 {
                 let (kind, bound) = (FaultKind::Speed, bounds.travel + minor / 2);
@@ -198,6 +205,7 @@ pub(crate) struct Accel {
     ended: u32,
     /// Steps of one axis alone, so far.
     without: PerAxis<u32>,
+    added: u32,
     x: Watch,
     z: Watch,
 }
@@ -216,6 +224,7 @@ impl Accel {
             began: 1,
             ended: 0,
             without: PerAxis::default(),
+            added: 0,
         };
         Self {
             ring: Box::new([rest; RING]),
@@ -227,6 +236,7 @@ impl Accel {
             began: 1,
             ended: 0,
             without: PerAxis::default(),
+            added: 0,
             x: Watch::new(Axis::X, limits.x, pulse.x.nm(), setup),
             z: Watch::new(Axis::Z, limits.z, pulse.z.nm(), setup),
         }
@@ -260,6 +270,11 @@ impl Accel {
         self.moved = true;
     }
 
+    /// Motor and program differ in a step.
+    pub(crate) fn added(&mut self) {
+        self.added = self.added.wrapping_add(1);
+    }
+
     /// The last edge completed a motion.
     pub(crate) fn joint(&mut self) {
         if self.open == 0 {
@@ -285,6 +300,7 @@ impl Accel {
         if let Some(boundary) = self.ring.get_mut(slot(self.tick, RING)) {
             boundary.here = here;
             boundary.without = self.without;
+            boundary.added = self.added;
         }
         let late = self.tick - LATE;
         if let Some(boundary) = self.ring.get_mut(slot(late, RING)) {

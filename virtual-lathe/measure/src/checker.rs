@@ -1,6 +1,7 @@
 //! The checker: takes the motions and the ticks, and hands each edge to the figures.
 
 use crate::accel::Accel;
+use crate::added::{Added, program_setup};
 use crate::deviation::Deviation;
 use crate::fault::{FaultKind, Faults, Here};
 use crate::feed::Feed;
@@ -20,7 +21,10 @@ use crate::setup::{CLOCKS_PER_SECOND, CLOCKS_PER_TICK, PerAxis, Setup, SetupErro
 #[derive(Clone, Debug)]
 pub struct Checker {
     event_min: u32,
+    setup: Setup,
+    /// Where the program is; the motor, too, without compensation.
     here: Here,
+    motor: PerAxis<i32>,
     port: Port,
     follow: Follow,
     accel: Accel,
@@ -37,6 +41,9 @@ pub struct Checker {
     count: Count,
     moved: Count,
 }
+
+/// No step.
+const STILL: PerAxis<i32> = PerAxis { x: 0, z: 0 };
 
 #[derive(Copy, Clone, Debug)]
 struct Count {
@@ -66,7 +73,9 @@ impl Checker {
         let from = Waypoint { nm: setup.start_nm, at };
         Ok(Self {
             event_min: u32::try_from(clocks_for(setup.event_min_ns)).unwrap_or(u32::MAX),
+            setup,
             here,
+            motor: setup.start,
             port: Port::new(setup.limits),
             accel: Accel::new(&setup),
             feed: Feed::new(2.0 * scale.coarser / 1e6, whole_clocks(settle)),
@@ -81,6 +90,15 @@ impl Checker {
             count,
             moved: count,
         })
+    }
+
+    /// Tells, before any motion, which axes the control compensates: the program is left 15/16 of their speed and 4/5 of
+    /// their acceleration.
+    #[must_use]
+    pub fn compensated(mut self, axes: PerAxis<bool>) -> Self {
+        let start = Waypoint { nm: self.setup.start_nm, at: self.setup.start.map(i64::from) };
+        self.follow = Follow::new(Scale::new(program_setup(self.setup, axes)), start);
+        self
     }
 
     /// Tells the next motion.
@@ -104,7 +122,7 @@ impl Checker {
         self.feed.override_percent(percent, self.here.clocks);
     }
 
-    /// Position in pulses after the last tick.
+    /// Position of the program in pulses after the last tick.
     #[must_use]
     pub fn position(&self) -> PerAxis<i32> {
         self.here.at
@@ -125,6 +143,13 @@ impl Checker {
     /// As `tick`; calls `on_step` at each event with a rising edge, with its time in train clocks and
     /// the position after it.
     pub fn tick_traced(&mut self, events: &[u32], on_step: &mut impl FnMut(u64, i32, i32)) {
+        self.tick_added(events, &[], on_step);
+    }
+
+    /// As `tick_traced`, where a control that compensates tells in what its motors differ from the program, in the order
+    /// of time. `on_step` gets the program's position; at steps that are the program's alone, too.
+    pub fn tick_added(&mut self, events: &[u32], added: &[Added], on_step: &mut impl FnMut(u64, i32, i32)) {
+        let mut added = added.iter().peekable();
         let start = self.here.clocks;
         let pulses = self.pulses;
         let mut hash = self.count.hash;
@@ -137,8 +162,24 @@ impl Checker {
                 self.faults.add(self.here.fault(kind, None, found, bound));
             }
             let moved = self.port.write(event, self.here, &mut self.faults);
-            if moved != (PerAxis { x: 0, z: 0 }) {
-                self.step(moved);
+            let now = self.here.clocks - start;
+            // up to this edge: what the program does by itself, and what the edge is besides it
+            let mut program = moved;
+            while let Some(next) = added.next_if(|next| u64::from(next.clock) <= now) {
+                if next.motor == STILL {
+                    self.step(next.program, STILL);
+                    on_step(self.here.clocks, self.here.at.x, self.here.at.z);
+                } else {
+                    if next.motor != moved || u64::from(next.clock) != now {
+                        let fault =
+                            self.here.fault(FaultKind::NotAdded, None, next.motor.x.into(), next.motor.z.into());
+                        self.faults.add(fault);
+                    }
+                    program = next.program;
+                }
+            }
+            if moved != STILL {
+                self.step(program, moved);
                 on_step(self.here.clocks, self.here.at.x, self.here.at.z);
             }
             self.here.clocks += u64::from(interval);
@@ -149,7 +190,15 @@ impl Checker {
             let fault = self.here.fault(FaultKind::TickSum, None, sum, tick);
             self.faults.add(fault);
         }
-        self.accel.boundary(self.here, &mut self.faults);
+        for left in added {
+            if left.motor != STILL {
+                let fault = self.here.fault(FaultKind::NotAdded, None, left.motor.x.into(), left.motor.z.into());
+                self.faults.add(fault);
+            }
+            self.step(left.program, STILL);
+            on_step(self.here.clocks, self.here.at.x, self.here.at.z);
+        }
+        self.accel.boundary(Here { at: self.motor, ..self.here }, &mut self.faults);
         self.count.hash = hash;
         self.count.events += events.len() as u64;
         self.count.clocks = self.here.clocks;
@@ -158,12 +207,22 @@ impl Checker {
         }
     }
 
-    /// An event moves the axes by `moved`.
-    fn step(&mut self, moved: PerAxis<i32>) {
+    /// The program moves by `moved`, the motor by `motor`.
+    fn step(&mut self, moved: PerAxis<i32>, motor: PerAxis<i32>) {
+        self.motor.x = self.motor.x.wrapping_add(motor.x);
+        self.motor.z = self.motor.z.wrapping_add(motor.z);
+        self.pulses.x += u64::from(motor.x.unsigned_abs());
+        self.pulses.z += u64::from(motor.z.unsigned_abs());
+        if moved != motor {
+            self.accel.added();
+        }
+        if moved == STILL {
+            // an edge all the same, of an axis that nothing is programmed for
+            self.accel.edge(motor, false, true);
+            return;
+        }
         self.here.at.x = self.here.at.x.wrapping_add(moved.x);
         self.here.at.z = self.here.at.z.wrapping_add(moved.z);
-        self.pulses.x += u64::from(moved.x.unsigned_abs());
-        self.pulses.z += u64::from(moved.z.unsigned_abs());
         let seen = self.follow.step(self.here, moved, &mut self.faults);
         if seen.entered
             && let Some(path) = self.follow.current()
@@ -205,7 +264,7 @@ impl Checker {
     #[must_use]
     pub fn finish(mut self) -> Report {
         self.port.finish(self.here, &mut self.faults);
-        self.accel.finish(self.here, &mut self.faults);
+        self.accel.finish(Here { at: self.motor, ..self.here }, &mut self.faults);
         let left = self.follow.left();
         if left > 0 {
             let left = i64::try_from(left).unwrap_or(i64::MAX);
@@ -220,6 +279,10 @@ impl Checker {
         Report {
             events: self.moved.events,
             pulses: self.pulses,
+            beyond: PerAxis {
+                x: self.motor.x.wrapping_sub(self.here.at.x),
+                z: self.motor.z.wrapping_sub(self.here.at.z),
+            },
             motions: self.motions,
             time_s: seconds(self.moved.clocks),
             train_hash: self.moved.hash.value(),

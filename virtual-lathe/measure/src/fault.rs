@@ -38,6 +38,8 @@ pub enum FaultKind {
     StartOffLattice,
     /// The last position isn't the last rounded end. X and Z of the rounded end.
     EndMissed,
+    /// A pulse beyond the program was declared that the pins don't show, or show otherwise. Pulses of X and Z declared.
+    NotAdded,
     /// Motions were left that should have made pulses. How many, and 0.
     MotionsLeft,
 }

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod accel;
+mod added;
 mod checker;
 mod deviation;
 mod fault;
@@ -15,6 +16,7 @@ mod report;
 mod setup;
 mod trace;
 
+pub use added::Added;
 pub use checker::Checker;
 pub use deviation::Deviation;
 pub use fault::{FAULTS_KEPT, Fault, FaultKind, Faults};

@@ -13,6 +13,8 @@ pub struct Report {
     pub events: u64,
     /// Rising edges of each step pin.
     pub pulses: PerAxis<u64>,
+    /// How far the motor is beyond the program at the end, in pulses. 0 without compensation.
+    pub beyond: PerAxis<i32>,
     /// Motions completed that made pulses.
     pub motions: u64,
     /// Time of the end of the last tick with a rising edge, in s.
