@@ -367,6 +367,7 @@ impl Parameters {
         settings.front_post = self.switch(index::FRONT_POST);
         settings.block_delete = self.switch(index::BLOCK_DELETE);
         settings.arc_tolerance = Length::from_nm(self.number(index::ARC_TOLERANCE)).unwrap_or_default();
+        settings.corner = Length::from_nm(self.number(index::CORNER)).unwrap_or_default();
         settings.start = self.start();
         for (number, feed) in settings.tape_feeds.iter_mut().enumerate() {
             let value = self.number(index::TAPE_FEEDS.wrapping_add(number));
@@ -391,11 +392,6 @@ impl Parameters {
     /// Whether M1 stops.
     pub fn optional_stop(&self) -> bool {
         self.switch(index::OPTIONAL_STOP)
-    }
-
-    /// How far a blend may leave a corner, nm.
-    pub fn corner_nm(&self) -> i64 {
-        self.number(index::CORNER)
     }
 
     fn axis(&self, axis: Axis) -> AxisConfig {

@@ -316,9 +316,6 @@ fn check(
     if checked.warnings > warnings.len() {
         warnings.push(format!("{} more warnings", checked.warnings - warnings.len()));
     }
-    if parameters.corner_nm() > 0 {
-        warnings.push("corner_um: corners are not blended; the path stays exact".into());
-    }
     Ok((warnings, chooser, curves))
 }
 

@@ -118,6 +118,14 @@ impl Number {
         if self.is_negative() || rest != 0 { None } else { u32::try_from(whole).ok() }
     }
 
+    /// The value as a code number with at most one decimal, in tenths (`61.1` is 611); else `None`.
+    pub fn code_tenths(self) -> Option<u32> {
+        let one = 10_u64.checked_pow(u32::from(self.decimals))?;
+        let tenfold = self.mantissa.checked_mul(10)?;
+        let rest = tenfold.checked_rem(one)?;
+        if self.is_negative() || rest != 0 { None } else { u32::try_from(tenfold.checked_div(one)?).ok() }
+    }
+
     /// The value times `unit`, rounded once: half away from zero. `None` past 64 bits.
     ///
     /// * `unit`: how many of the wanted unit one written unit holds, e.g. 1 000 000 nm for 1 mm, 25 400 000 for 1 in.
@@ -311,6 +319,12 @@ mod tests {
         let code = |text: &str| Number::parse(text.as_bytes()).unwrap().code();
         assert_eq!([code("1"), code("01"), code("1.0"), code("+1.")], [Some(1); 4]);
         assert_eq!([code("38.2"), code("-1"), code("-0"), code("4294967296")], [None; 4]);
+        let tenths = |text: &str| Number::parse(text.as_bytes()).unwrap().code_tenths();
+        assert_eq!(
+            [tenths("61.1"), tenths("61.10"), tenths("61"), tenths("0.5")],
+            [Some(611), Some(611), Some(610), Some(5)]
+        );
+        assert_eq!([tenths("61.11"), tenths("-61.1"), tenths("999999999999999999")], [None; 3]);
     }
 
     #[test]

@@ -122,8 +122,23 @@ pub enum DiagnosticKind {
     MotionMissing(Word),
     /// I, K or R in a line that is no arc.
     ArcWordUnused(Word),
-    /// P in a line without G4.
+    /// P in a line without G4 and G64.
     DwellWordUnused(Word),
+    /// P with G4 and G64.
+    ToleranceWithDwell(Word),
+    /// P with G61 or G61.1.
+    ToleranceUnused {
+        /// P.
+        word: Word,
+        /// The code.
+        code: Word,
+    },
+    /// P of G64 below zero.
+    ToleranceNegative(Word),
+    /// P of G64 above [`PathControl::LIMIT_NM`](super::PathControl::LIMIT_NM).
+    ToleranceTooLarge(Word),
+    /// Warning: G64 without P.
+    ToleranceMissing(Word),
     /// Arc without I, K and R.
     CentreMissing,
     /// Arc with R and with I or K.
@@ -177,7 +192,7 @@ impl DiagnosticKind {
     /// How bad it is.
     pub const fn severity(self) -> Severity {
         match self {
-            Self::DwellLong(_) | Self::EndCodeMissing => Severity::Warning,
+            Self::DwellLong(_) | Self::ToleranceMissing(_) | Self::EndCodeMissing => Severity::Warning,
             _ => Severity::Error,
         }
     }

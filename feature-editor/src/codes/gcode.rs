@@ -5,10 +5,11 @@
 
 use heapless::Vec;
 
-use interp_core::units::{Feedrate, Sense};
+use interp_core::units::{Feedrate, Length, Sense};
 
+use super::decimal::Number;
 use super::diagnostic::{Diagnostic, DiagnosticKind, Report};
-use super::item::{Action, Feed, SpindleSpeed};
+use super::item::{Action, Feed, PathControl, SpindleSpeed};
 use super::modal::{Motion, State};
 use super::settings::{Format, Settings};
 use super::word::{Lexer, Placed};
@@ -27,14 +28,26 @@ enum Code {
     /// True for G91.
     Incremental(bool),
     FeedPerMinute,
+    Path(PathCode),
 }
 
-/// Number of modal groups.
-const GROUPS: usize = 7;
+/// Codes of the path control.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+enum PathCode {
+    Exact,
+    Stop,
+    Blend,
+}
+
+/// Number of groups.
+const GROUPS: usize = 8;
 
 impl Code {
-    fn from_number(number: u32) -> Option<Self> {
-        Some(match number {
+    fn from_number(number: Number) -> Option<Self> {
+        if number.code_tenths() == Some(611) {
+            return Some(Self::Path(PathCode::Stop));
+        }
+        Some(match number.code()? {
             0 => Self::Motion(Motion::Rapid),
             1 => Self::Motion(Motion::Line),
             2 => Self::Motion(Motion::Arc(Sense::Clockwise)),
@@ -45,6 +58,8 @@ impl Code {
             18 => Self::Plane,
             20 => Self::Inch(true),
             21 => Self::Inch(false),
+            61 => Self::Path(PathCode::Exact),
+            64 => Self::Path(PathCode::Blend),
             90 => Self::Incremental(false),
             91 => Self::Incremental(true),
             94 => Self::FeedPerMinute,
@@ -112,7 +127,7 @@ impl Block {
 
     fn code(&mut self, placed: Placed, report: &mut Report<'_, impl FnMut(Diagnostic)>) {
         let word = placed.word;
-        let Some(code) = word.number.code().and_then(Code::from_number) else {
+        let Some(code) = Code::from_number(word.number) else {
             self.is_foreign = true;
             return report.tell(placed.span, DiagnosticKind::UnknownG { word, format: Format::Gcode });
         };
@@ -135,6 +150,14 @@ impl Block {
         self.codes.iter().find(|(code, _)| matches!(code, Code::Dwell)).map(|&(_, placed)| placed)
     }
 
+    /// The G61, G61.1 or G64 of this block.
+    fn path_word(&self) -> Option<(PathCode, Placed)> {
+        self.codes.iter().find_map(|&(code, placed)| match code {
+            Code::Path(path) => Some((path, placed)),
+            _ => None,
+        })
+    }
+
     /// Puts the modal codes into force.
     fn apply(&self, state: &mut State) {
         for &(code, _) in &self.codes {
@@ -143,7 +166,7 @@ impl Block {
                 Code::Diameter(diameter) => state.diameter = diameter,
                 Code::Inch(inch) => state.inch = inch,
                 Code::Incremental(incremental) => state.incremental = incremental,
-                Code::Dwell | Code::Plane | Code::FeedPerMinute => {}
+                Code::Dwell | Code::Plane | Code::FeedPerMinute | Code::Path(_) => {}
             }
         }
     }
@@ -169,6 +192,7 @@ pub(crate) fn block(
     let spindle = block.words.spindle.map(|(action, _)| action);
     let tool = block.words.get('T').and_then(|placed| tool(placed, report));
     let dwell = dwell(&block, report);
+    path(&block, state, report);
     let motion = super::motion::motion(&block, settings, state, report);
     let stop = block.words.stop.map(|(action, _)| action);
     ([speed, spindle, tool, dwell, motion, stop], block.words.ends())
@@ -215,6 +239,42 @@ fn tool(placed: Placed, report: &mut Report<'_, impl FnMut(Diagnostic)>) -> Opti
     }
 }
 
+/// G61, G61.1, and G64 with P in millimetres (inches).
+fn path(block: &Block, state: &mut State, report: &mut Report<'_, impl FnMut(Diagnostic)>) {
+    let Some((code, placed)) = block.path_word() else { return };
+    let tolerance = match (block.words.get('P'), code) {
+        (Some(tolerance), PathCode::Blend) if block.dwell_word().is_some() => {
+            let word = tolerance.word;
+            return report.tell(tolerance.span, DiagnosticKind::ToleranceWithDwell(word));
+        }
+        (Some(tolerance), PathCode::Exact | PathCode::Stop) if block.dwell_word().is_none() => {
+            let (word, code) = (tolerance.word, placed.word);
+            return report.tell(tolerance.span, DiagnosticKind::ToleranceUnused { word, code });
+        }
+        (tolerance, _) => tolerance,
+    };
+    state.control = match (code, tolerance) {
+        (PathCode::Exact, _) => PathControl::Exact,
+        (PathCode::Stop, _) => PathControl::Stop,
+        (PathCode::Blend, None) => {
+            if !block.is_foreign {
+                report.tell(placed.span, DiagnosticKind::ToleranceMissing(placed.word));
+            }
+            PathControl::Blend { tolerance: None }
+        }
+        (PathCode::Blend, Some(Placed { word, span })) => {
+            if word.number.is_negative() && !word.number.is_zero() {
+                return report.tell(span, DiagnosticKind::ToleranceNegative(word));
+            }
+            let limit = i64::from(PathControl::LIMIT_NM);
+            match word.number.scaled(state.unit_nm()).filter(|nm| *nm <= limit).and_then(Length::from_nm) {
+                Some(tolerance) => PathControl::within(tolerance),
+                None => return report.tell(span, DiagnosticKind::ToleranceTooLarge(word)),
+            }
+        }
+    };
+}
+
 /// G4 with P in seconds.
 fn dwell(block: &Block, report: &mut Report<'_, impl FnMut(Diagnostic)>) -> Option<Action> {
     let placed = match (block.dwell_word(), block.words.get('P')) {
@@ -225,6 +285,7 @@ fn dwell(block: &Block, report: &mut Report<'_, impl FnMut(Diagnostic)>) -> Opti
             }
             return None;
         }
+        (None, Some(_)) if block.path_word().is_some() => return None,
         (None, Some(placed)) => {
             if !block.is_foreign {
                 report.tell(placed.span, DiagnosticKind::DwellWordUnused(placed.word));

@@ -1,6 +1,6 @@
 //! What a program asks of the lathe: one [`Item`] an action, in execution order.
 
-use interp_core::units::{Feedrate, Point, Sense};
+use interp_core::units::{Feedrate, Length, Point, Sense};
 
 use super::decimal::Distance;
 
@@ -49,6 +49,31 @@ impl SpindleSpeed {
     /// Thousandths of a turn a minute.
     pub const fn milli_rpm(self) -> u32 {
         self.0
+    }
+}
+
+/// How corners are taken (G61, G61.1, G64).
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum PathControl {
+    /// G61: along the programmed path, as fast as each corner allows.
+    #[default]
+    Exact,
+    /// G61.1: the tool comes to a stand at the end of every motion.
+    Stop,
+    /// G64: an arc in place of each corner between two feeds.
+    Blend {
+        /// How far it may leave the corner, above zero; `None` (G64 without P) as far as the feed needs.
+        tolerance: Option<Length>,
+    },
+}
+
+impl PathControl {
+    /// Largest tolerance of a blend: 1 mm.
+    pub const LIMIT_NM: i32 = 1_000_000;
+
+    /// Blends within a tolerance; without one, zero, the exact path.
+    pub const fn within(tolerance: Length) -> Self {
+        if tolerance.nm() > 0 { Self::Blend { tolerance: Some(tolerance) } } else { Self::Exact }
     }
 }
 
@@ -104,4 +129,6 @@ pub struct Item {
     pub line: u32,
     /// What to do.
     pub action: Action,
+    /// How the corners at its ends are taken.
+    pub control: PathControl,
 }

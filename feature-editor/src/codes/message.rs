@@ -94,7 +94,12 @@ impl Display for DiagnosticKind {
             K::ArcWordUnused(word) => {
                 write!(f, "{word} belongs to an arc, and this block has none")
             }
-            K::DwellWordUnused(word) => write!(f, "{word} belongs to G4, and this block has none"),
+            K::DwellWordUnused(word) => write!(f, "{word} belongs to G4 or G64, and this block has none"),
+            K::ToleranceWithDwell(word) => write!(f, "{word} with G4 and G64 in one block"),
+            K::ToleranceUnused { word, code } => write!(f, "{word} with {code} in one block"),
+            K::ToleranceNegative(word) => write!(f, "{word} is a negative tolerance"),
+            K::ToleranceTooLarge(word) => write!(f, "{word} is a tolerance above 1 mm"),
+            K::ToleranceMissing(word) => write!(f, "{word} without P leaves corners as far as the feed needs"),
             K::CentreMissing => f.write_str("arc without a centre"),
             K::CentreAndRadius { centre, radius } => {
                 write!(f, "{centre} with {radius} in one block")
@@ -130,7 +135,7 @@ fn instead_of_g(word: Word, format: Format) -> &'static str {
         (Format::Gcode, Some(28 | 30)) => "write G0 with the end point",
         (Format::Gcode, Some(32 | 33 | 76)) => "write the thread as a feature unit: codes have none",
         (Format::Gcode, Some(40 | 54 | 80 | 97)) => "delete it: nothing else is ever in force",
-        _ => "write one of G0 G1 G2 G3 G4 G7 G8 G18 G20 G21 G90 G91 G94",
+        _ => "write one of G0 G1 G2 G3 G4 G7 G8 G18 G20 G21 G61 G61.1 G64 G90 G91 G94",
     }
 }
 
@@ -194,7 +199,12 @@ impl Display for Remedy {
             K::EndMissing(_) => "write the end point, even where it equals the start",
             K::MotionMissing(_) => "write G0, G1, G2 or G3 before it",
             K::ArcWordUnused(_) => "delete it, or write G2 or G3",
-            K::DwellWordUnused(_) => "delete it, or write G4",
+            K::DwellWordUnused(_) => "delete it, or write G4 or G64",
+            K::ToleranceWithDwell(_) => "write two lines: P is seconds for G4 and a tolerance for G64",
+            K::ToleranceUnused { .. } => "delete P, or write G64",
+            K::ToleranceNegative(_) => "write P without a minus, or G61 for the exact path",
+            K::ToleranceTooLarge(_) => "write P in mm (G20: inch), at most 1 mm",
+            K::ToleranceMissing(_) => "write P with the tolerance in mm (G20: inch)",
             K::CentreMissing => "write I and K (from the start to the centre), or R",
             K::CentreAndRadius { .. } => "write I and K, or R, not both",
             K::FullCircleByRadius(_) => "write I and K instead of R",

@@ -7,11 +7,13 @@
 //! # G-code
 //! - G0 rapid, G1 line, G2 and G3 arcs, G4 dwell (P in seconds); G7 X and U as diameter, G8 as radius (at start);
 //!   G18; G20 inch, G21 mm (at start); G90 absolute (at start), G91 incremental; G94.
+//! - G61 exact path (at start, unless the settings have a tolerance), G61.1 exact stop, G64 P with the tolerance of
+//!   blends in mm (inch).
 //! - M0 stop, M1 optional stop, M2 and M30 end, M3 M4 M5 spindle. S turns a minute.
 //! - T1 is tool 1 with offset 1; of three or four digits the last two are the offset (T0103).
 //! - X Z absolute (incremental under G91), U W always incremental. I K from the start of the arc to its centre, always
 //!   as radius, the missing one zero; or R, above zero up to 180 degrees, below zero the larger arc.
-//! - F in mm (inch) a minute along the path. F, the motion code and G7 to G91 stay in force.
+//! - F in mm (inch) a minute along the path. F, the motion code and G7 to G91 with G61 to G64 stay in force.
 //! - N and O numbers, comments in ( ) and behind ;, `%` alone on its line, `/` before a line that may be skipped.
 //! - G2 is clockwise seen with Z to the right and X upward; a front tool post mirrors it.
 //!
@@ -45,7 +47,7 @@ mod words;
 pub use decimal::{Distance, Number, NumberError};
 pub use detect::Detector;
 pub use diagnostic::{Diagnostic, DiagnosticKind, Remedy, Severity};
-pub use item::{Action, Centre, Feed, Item, SpindleCommand, SpindleSpeed};
+pub use item::{Action, Centre, Feed, Item, PathControl, SpindleCommand, SpindleSpeed};
 pub use modal::Modal;
 pub use settings::{Format, Settings};
 pub use word::Word;
@@ -97,7 +99,7 @@ pub struct Interpreter {
 impl Interpreter {
     /// At the start of a program.
     pub const fn new(settings: Settings, format: Format) -> Self {
-        let state = State::new(settings.start);
+        let state = State::new(&settings);
         Self { settings, format, state, line: 0, has_words: false, has_percent: false, ended: false }
     }
 
@@ -135,7 +137,7 @@ impl Interpreter {
         self.ended = ends;
         if !report.is_refused() {
             for action in actions.into_iter().flatten() {
-                emit(Item { line: self.line, action });
+                emit(Item { line: self.line, action, control: self.state.control });
             }
         }
     }

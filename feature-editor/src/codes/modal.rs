@@ -2,7 +2,8 @@
 
 use interp_core::units::{Feedrate, Point, Sense};
 
-use super::item::Feed;
+use super::item::{Feed, PathControl};
+use super::settings::Settings;
 
 /// Motion mode, as programmed (not yet mirrored).
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -45,12 +46,22 @@ pub(crate) struct State {
     pub(crate) incremental: bool,
     /// None until one was written. [`Feed::Rapid`] only in the 1973 format.
     pub(crate) feed: Option<Feed>,
+    /// G61, G61.1, G64.
+    pub(crate) control: PathControl,
 }
 
 impl State {
     /// State at the start of a program.
-    pub(crate) const fn new(position: Point) -> Self {
-        Self { position, motion: None, diameter: false, inch: false, incremental: false, feed: None }
+    pub(crate) const fn new(settings: &Settings) -> Self {
+        Self {
+            position: settings.start,
+            motion: None,
+            diameter: false,
+            inch: false,
+            incremental: false,
+            feed: None,
+            control: PathControl::within(settings.corner),
+        }
     }
 
     /// For display.

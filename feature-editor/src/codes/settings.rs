@@ -22,6 +22,8 @@ pub struct Settings {
     pub arc_tolerance: Length,
     /// Feeds of the codes F1 to F9 of the 1973 format, in this order.
     pub tape_feeds: [Option<Feedrate>; 9],
+    /// How far a blend may leave a corner until the program says otherwise; zero or less for the exact path.
+    pub corner: Length,
     /// Where the tool is when the program starts.
     pub start: Point,
     /// Fastest feed of the cross slide.
@@ -31,7 +33,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Rear tool post, no block delete, 0.01 mm for arcs, no tape feeds, start at the zero point.
+    /// Rear tool post, no block delete, 0.01 mm for arcs, no tape feeds, no blends, start at the zero point.
     pub const fn new(max_feed_x: Feedrate, max_feed_z: Feedrate) -> Self {
         Self {
             front_post: false,
@@ -41,6 +43,7 @@ impl Settings {
                 None => Length::ZERO,
             },
             tape_feeds: [None; 9],
+            corner: Length::ZERO,
             start: Point { x: Length::ZERO, z: Length::ZERO },
             max_feed_x,
             max_feed_z,

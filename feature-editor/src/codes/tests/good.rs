@@ -26,6 +26,40 @@ fn absolute_incremental_diameter_and_inch() {
 }
 
 #[test]
+fn path_control_is_modal_and_begins_as_the_settings_say() {
+    let controls = |corner: i32, program: &str| {
+        let settings = Settings { corner: Length::from_um(corner).unwrap(), ..settings() };
+        let mut interpreter = Interpreter::new(settings, Format::Gcode);
+        let mut controls = Vec::new();
+        for line in program.lines() {
+            interpreter.line(line.as_bytes(), &mut |item: Item| controls.push(item.control), &mut |_| {});
+        }
+        controls
+    };
+    let within = |um: i32| PathControl::Blend { tolerance: Length::from_um(um) };
+    assert_eq!(controls(0, "G0 X1"), [PathControl::Exact]);
+    assert_eq!(
+        controls(
+            20,
+            "G0 X1\nG64 P0.05 X2\nX3\nG20 G64 P.001 X1\nG61\nX4\nG61.1\nX5\nG64\nX6\nG64 P0 X7\nG4 P1 G61.1\nG64 P1\nX1"
+        ),
+        [
+            within(20),
+            within(50),
+            within(50),
+            PathControl::Blend { tolerance: Length::from_nm(25_400) },
+            PathControl::Exact,
+            PathControl::Stop,
+            PathControl::Blend { tolerance: None },
+            PathControl::Exact,
+            PathControl::Stop,
+            // 1 inch is too large: refused, and what was in force stays
+            PathControl::Stop,
+        ]
+    );
+}
+
+#[test]
 fn motion_and_feed_are_modal() {
     let feed = Feed::PerMinute(Feedrate::from_nm_per_min(254_000_000).unwrap());
     assert_eq!(

@@ -66,6 +66,24 @@ fn dwell() {
 }
 
 #[test]
+fn path_control() {
+    assert_eq!(one("G64 P-0.1"), (5, 5, K::ToleranceNegative(word("P-0.1"))));
+    assert_eq!(one("G64 P1.000001"), (5, 9, K::ToleranceTooLarge(word("P1.000001"))));
+    assert_eq!(one("G20 G64 P0.04"), (9, 5, K::ToleranceTooLarge(word("P0.04"))));
+    assert_eq!(one("G64 P999999999999999999"), (5, 19, K::ToleranceTooLarge(word("P999999999999999999"))));
+    assert_eq!(one("G64 P"), (5, 1, K::NumberMissing('P')));
+    assert_eq!(one("G61 P0.1"), (5, 4, K::ToleranceUnused { word: word("P0.1"), code: word("G61") }));
+    assert_eq!(one("P1 G61.1"), (1, 2, K::ToleranceUnused { word: word("P1"), code: word("G61.1") }));
+    assert_eq!(one("G4 G64 P1"), (8, 2, K::ToleranceWithDwell(word("P1"))));
+    assert_eq!(one("G61 G64"), (5, 3, K::SameGroup { first: word("G61"), second: word("G64") }));
+    assert_eq!(one("G61.2"), (1, 5, K::UnknownG { word: word("G61.2"), format: Format::Gcode }));
+    assert_eq!(one("G64.1"), (1, 5, K::UnknownG { word: word("G64.1"), format: Format::Gcode }));
+    let (_, found) = run_with(settings(), Format::Gcode, "G64\nM2");
+    assert_eq!(found, [(1, 1, 3, K::ToleranceMissing(word("G64")))]);
+    assert_eq!(found[0].3.severity(), Severity::Warning);
+}
+
+#[test]
 fn coordinates() {
     assert_eq!(one("G0 X2100.000001"), (4, 12, K::Coordinate { word: word("X2100.000001"), axis: Axis::X }));
     assert_eq!(one("G0 Z-2100\nW-0.000001"), (1, 10, K::Coordinate { word: word("W-0.000001"), axis: Axis::Z }));
