@@ -324,7 +324,7 @@ impl Builder {
     }
 
     /// The largest value along a direction whose parts stay within `x` and `z`, and the axis that sets it.
-    fn least(x: u32, z: u32, (ux, uz): Direction) -> (u32, Axis) {
+    pub(crate) fn least(x: u32, z: u32, (ux, uz): Direction) -> (u32, Axis) {
         let along = |limit: u32, part: i64| {
             let part = part.unsigned_abs();
             (u64::from(limit) << 30).checked_div(part).unwrap_or(u64::MAX)

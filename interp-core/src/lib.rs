@@ -3,6 +3,7 @@
 // an overflow would be a panic in the foreground: sums wrap where a proof says they cannot, else saturate
 #![cfg_attr(not(test), deny(clippy::arithmetic_side_effects))]
 #![doc = include_str!("../README.md")]
+pub mod blend;
 pub mod block;
 pub mod channel;
 pub mod compensation;
