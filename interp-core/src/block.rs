@@ -185,6 +185,11 @@ impl Builder {
         Self { machine: *machine, metric: Metric::new(machine.x.pulse, machine.z.pulse), at, lattice, heading: None }
     }
 
+    /// Where the last curve ended, as programmed.
+    pub const fn programmed(&self) -> Point {
+        self.at
+    }
+
     /// Where the last curve ended, rounded.
     pub const fn lattice(&self) -> Lattice {
         self.lattice

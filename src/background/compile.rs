@@ -3,6 +3,9 @@
 //! The interpreter of `feature-editor` makes actions of a line, the block builder of `interp-core` makes blocks of
 //! the actions. A line with an error among its findings is refused: its blocks, if any, are not to be run. A stored
 //! program is compiled twice: once to check it whole, once to run it.
+//!
+//! Where corners are blended (see `blend`) one feed is held back until the next action: its blocks come with a later
+//! line, or by [`Compiler::flush`].
 
 use core::fmt;
 
@@ -13,6 +16,8 @@ use interp_core::block::{ArcRefusal, Block, Builder, Limited, Output, Pace, Path
 use interp_core::config::Machine;
 use interp_core::curve::method::Method;
 use interp_core::units::{Axis, Lattice, Point};
+
+use super::blend::Blender;
 
 /// Something to say about a program.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -120,6 +125,7 @@ impl fmt::Display for Finding {
 pub struct Compiler {
     interpreter: Interpreter,
     builder: Builder,
+    blender: Blender,
     at: Point,
     ended: bool,
     /// It was said that the method knows no arcs.
@@ -131,13 +137,15 @@ impl Compiler {
     pub fn new(settings: Settings, format: Format, machine: &Machine) -> Self {
         let builder = Builder::new(machine, settings.start);
         let at = settings.start;
-        Self { interpreter: Interpreter::new(settings, format), builder, at, ended: false, told: false }
+        let blender = Blender::new(machine);
+        Self { interpreter: Interpreter::new(settings, format), builder, blender, at, ended: false, told: false }
     }
 
     /// Goes on under other settings and on another machine, with the tool at rest at the settings' `start`. What is
-    /// modal stays in force.
+    /// modal stays in force; a feed that is held back is forgotten.
     pub fn configure(&mut self, settings: Settings, machine: &Machine) {
         self.builder = Builder::new(machine, settings.start);
+        self.blender = Blender::new(machine);
         self.at = settings.start;
         self.interpreter.configure(settings);
     }
@@ -152,7 +160,7 @@ impl Compiler {
         self.interpreter.modal()
     }
 
-    /// The lattice point that everything compiled so far leads to.
+    /// The lattice point that everything compiled so far leads to, but for a feed that is held back.
     pub const fn lattice(&self) -> Lattice {
         self.builder.lattice()
     }
@@ -162,10 +170,29 @@ impl Compiler {
         self.ended
     }
 
+    /// Whether a feed is held back for the corner at its end.
+    pub const fn holds(&self) -> bool {
+        self.blender.holds()
+    }
+
+    /// Lets the feed go out that is held back, as nothing follows for now: its end stays a sharp corner.
+    pub fn flush(&mut self, emit: &mut impl FnMut(&Item, &[Block])) {
+        self.blender.flush(&mut self.builder, emit);
+    }
+
+    /// Forgets the feed that is held back; the program goes on from where the one before it ended.
+    pub fn forget(&mut self) {
+        if self.blender.holds() {
+            self.blender.forget();
+            self.at = self.builder.programmed();
+        }
+    }
+
     /// Compiles one line, without its terminator. `emit` gets each action and the blocks that it makes, `report` all
-    /// that there is to say.
+    /// that there is to say. Corners come shortened and with their arcs; the last line of a program lets all go out.
     pub fn line(&mut self, text: &[u8], emit: &mut impl FnMut(&Item, &[Block]), report: &mut impl FnMut(Finding)) {
-        let (builder, at, ended) = (&mut self.builder, &mut self.at, &mut self.ended);
+        let (builder, blender) = (&mut self.builder, &mut self.blender);
+        let (at, ended) = (&mut self.at, &mut self.ended);
         let mut late = None;
         let (told, mut no_arcs) = (&mut self.told, None);
         self.interpreter.line(
@@ -175,7 +202,7 @@ impl Compiler {
                     *told = true;
                     no_arcs = Some(Finding::NoArcs { line: item.line, method: builder.method() });
                 }
-                let found = compile(builder, &item, emit);
+                let found = blender.take(builder, &item, *at, emit);
                 if let (Action::Line { end, .. } | Action::Arc { end, .. }, None | Some(Finding::Limited { .. })) =
                     (item.action, found)
                 {
@@ -187,11 +214,15 @@ impl Compiler {
             &mut |diagnostic| report(Finding::Text(diagnostic)),
         );
         *ended |= self.interpreter.is_ended();
+        if *ended {
+            blender.flush(builder, emit);
+        }
         late.into_iter().chain(no_arcs).for_each(report);
     }
 
-    /// Ends the program: says what only the whole can be blamed for. The caller then adds the end block that
-    /// [`end_block`](Self::end_block) gives, where the program had none.
+    /// Ends the program: says what only the whole can be blamed for. The caller then lets the held feed
+    /// [go out](Self::flush) and adds the end block that [`end_block`](Self::end_block) gives, where the program had
+    /// none.
     pub fn finish(&mut self, report: &mut impl FnMut(Finding)) {
         self.interpreter.finish(&mut |diagnostic| report(Finding::Text(diagnostic)));
     }
@@ -202,14 +233,22 @@ impl Compiler {
     }
 }
 
+/// The motion of an action.
+pub(super) const fn motion_of(action: &Action) -> Option<(Path, Point, Feed)> {
+    match *action {
+        Action::Line { end, feed } => Some((Path::Line, end, feed)),
+        Action::Arc { end, centre, sense, feed } => {
+            Some((Path::Arc { centre: (centre.x.nm(), centre.z.nm()), sense }, end, feed))
+        }
+        _ => None,
+    }
+}
+
 /// Makes the blocks of one action.
-fn compile(builder: &mut Builder, item: &Item, emit: &mut impl FnMut(&Item, &[Block])) -> Option<Finding> {
+pub(super) fn compile(builder: &mut Builder, item: &Item, emit: &mut impl FnMut(&Item, &[Block])) -> Option<Finding> {
     let line = item.line;
     let (path, end, feed) = match item.action {
-        Action::Line { end, feed } => (Path::Line, end, feed),
-        Action::Arc { end, centre, sense, feed } => {
-            (Path::Arc { centre: (centre.x.nm(), centre.z.nm()), sense }, end, feed)
-        }
+        Action::Line { .. } | Action::Arc { .. } => motion_of(&item.action)?,
         Action::Dwell { ms } => return stand(builder, item, Work::Dwell(ms), emit),
         Action::Spindle(command) => {
             let output = match command {

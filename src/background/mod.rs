@@ -1,5 +1,6 @@
 //! Background: parameters, the job that compiles program text into blocks, and the link with its inbox and status.
 
+mod blend;
 pub mod compile;
 pub mod inbox;
 pub mod link;

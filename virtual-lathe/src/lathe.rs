@@ -127,6 +127,7 @@ pub fn check(
         last.clear();
         last.extend_from_slice(line.get(..line.len().min(256)).unwrap_or_default());
     }
+    compiler.flush(&mut |item, _| action(item));
     let mut found = Vec::new();
     compiler.finish(&mut |finding| found.push(finding));
     for finding in found {
@@ -159,18 +160,19 @@ impl Source {
     fn next(&mut self, observer: &mut impl Observer) -> io::Result<Option<Block>> {
         while self.ready.is_empty() && !self.ended {
             self.line = self.line.saturating_add(1);
-            let text = match self.lines.next_line()? {
-                Some(text) if !self.compiler.is_ended() => text,
-                _ => {
-                    self.ended = true;
-                    self.ready.push_back(Compiler::end_block(self.line));
-                    break;
-                }
-            };
             let ready = &mut self.ready;
             let mut emit = |item: &Item, blocks: &[Block]| {
                 observer.compiled(item, blocks.len());
                 ready.extend(blocks);
+            };
+            let text = match self.lines.next_line()? {
+                Some(text) if !self.compiler.is_ended() => text,
+                _ => {
+                    self.ended = true;
+                    self.compiler.flush(&mut emit);
+                    self.ready.push_back(Compiler::end_block(self.line));
+                    break;
+                }
             };
             // the program was checked before: what there is to say has been said
             self.compiler.line(text, &mut emit, &mut |_| {});

@@ -77,7 +77,10 @@ pub(crate) fn run(trial: &Trial, most: usize, take: &mut Take<'_>) -> Result<()>
                     Some(line) => {
                         compiler.line(line, &mut |_: &Item, blocks| ready.extend(blocks), &mut |_| {});
                     }
-                    None => ready.push_back(Compiler::end_block(0)),
+                    None => {
+                        compiler.flush(&mut |_: &Item, blocks| ready.extend(blocks));
+                        ready.push_back(Compiler::end_block(0));
+                    }
                 }
                 ended = ready.iter().any(|block| matches!(block.work, Work::End));
             }

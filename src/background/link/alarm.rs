@@ -13,12 +13,14 @@ impl Link {
         let before = core::mem::replace(&mut self.alarm, snapshot.alarm);
         let Some(alarm) = snapshot.alarm.filter(|alarm| before != Some(*alarm)) else { return };
         self.held = false;
+        self.compiler.forget();
         self.outbox.flow = None;
         self.accessories = Accessories::default();
         self.message(out, format_args!("{alarm}; the position is unverified"));
         self.say(out, format_args!("ALARM:{}", alarm.number()));
-        if self.owes_ok && !self.pending.is_empty() {
-            self.pending.clear();
+        let waited = !self.pending.is_empty();
+        self.pending.clear();
+        if self.owes_ok && waited {
             self.owes_ok = false;
             self.refuse(&Refusal::Locked(alarm), out);
         }

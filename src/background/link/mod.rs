@@ -18,6 +18,11 @@
 //! by itself after a pause of its sender. A reset brakes, then forgets all blocks, all lines and all that is modal;
 //! programs go on from where the tool then is. Lines that arrive meanwhile wait, and are read after the banner.
 //!
+//! # Corners
+//! Where corners are blended, the compiler holds one feed back until the next line; its line is answered at once. Where no
+//! byte comes for 25 ticks and the foreground has taken all blocks, the feed goes out, and the corner stays sharp.
+//! Until then the lathe counts as busy.
+//!
 //! # Alarms
 //! The foreground latches them and forgets its blocks. The link tells `ALARM:N` once and refuses program lines until `$X`,
 //! as Grbl does; a reset forgets all but the alarm.
@@ -66,8 +71,14 @@ use status::{Known, Rounds};
 pub use receiver::RECEIVE_BUFFER;
 pub use status::Snapshot;
 
-/// Blocks that a line makes at most: speed, spindle, tool, dwell, a motion in two parts, stop or end.
-const BLOCKS_PER_LINE: usize = 7;
+/// Blocks that a line makes at most: a held feed in two parts, speed, spindle, tool, dwell, a motion in two parts, the
+/// stand of an exact stop, stop or end.
+const BLOCKS_PER_LINE: usize = 10;
+
+/// Calls of [`Link::work`] without anything to do (one a tick, where no byte comes) after which a feed that is held back
+/// for the corner at its end goes out, if no byte came and the queue of blocks is empty. Half of what a channel waits
+/// before it begins with what it has, so that it has all.
+const HOLD_PATIENCE: u8 = 25;
 
 /// Least and largest feed override that the link sets, percent.
 const OVERRIDES: (u16, u16) = (10, 200);
@@ -133,6 +144,8 @@ pub struct Link {
     pending: Deque<Block, BLOCKS_PER_LINE>,
     /// The last line gets its `ok` when `pending` is empty.
     owes_ok: bool,
+    /// Calls without anything to do while a feed was held back.
+    waited: u8,
     /// The parameter that `$$` lists next.
     listing: Option<usize>,
     outbox: Outbox,
@@ -174,6 +187,7 @@ impl Link {
             line: Vec::new(),
             pending: Deque::new(),
             owes_ok: false,
+            waited: 0,
             listing: None,
             outbox: Outbox { percent, optional_stop, ..Outbox::default() },
             settling: Settling::Sent,
@@ -202,6 +216,7 @@ impl Link {
     /// Takes a byte that is not a real-time one. Bytes must come in the order of the wire; those that came before a
     /// reset must be given before it, or they count as sent after it.
     pub fn receive(&mut self, byte: u8) {
+        self.waited = 0;
         self.receiver.receive(byte);
     }
 
@@ -290,10 +305,10 @@ impl Link {
             self.send(commands);
             return true;
         }
-        if self.owes_ok {
+        if self.owes_ok || !self.pending.is_empty() {
             return self.queue(blocks, out);
         }
-        let idle = still && blocks.is_empty();
+        let idle = still && blocks.is_empty() && !self.compiler.holds();
         self.busy &= !idle;
         if idle && snapshot.state == State::Ended {
             // the end of a program stops the spindle
@@ -303,7 +318,8 @@ impl Link {
             self.list(at, out);
             return true;
         }
-        let Some(received) = self.receiver.take(&mut self.line) else { return false };
+        let Some(received) = self.receiver.take(&mut self.line) else { return self.wait(blocks) };
+        self.waited = 0;
         let result = match received {
             Received::Line => self.obey(idle, snapshot, out),
             Received::Nothing => {
@@ -319,6 +335,20 @@ impl Link {
             Err(refusal) => self.refuse(&refusal, out),
         }
         true
+    }
+
+    /// Nothing is due. True if it was so for long enough that a feed goes out which was held back.
+    fn wait(&mut self, blocks: &Producer<'_, Block>) -> bool {
+        if !self.compiler.holds() || !blocks.is_empty() {
+            return false;
+        }
+        self.waited = self.waited.saturating_add(1);
+        let over = self.waited >= HOLD_PATIENCE;
+        if over {
+            self.waited = 0;
+            self.let_go();
+        }
+        over
     }
 
     /// Brings [`Settling`] up to date.
@@ -358,7 +388,7 @@ impl Link {
             any = true;
         }
         self.busy |= any;
-        if self.pending.is_empty() {
+        if self.owes_ok && self.pending.is_empty() {
             self.owes_ok = false;
             self.say(out, format_args!("ok"));
             any = true;
@@ -383,6 +413,7 @@ impl Link {
     fn reset(&mut self) {
         self.receiver.clear();
         self.pending.clear();
+        self.compiler.forget();
         self.owes_ok = false;
         self.listing = None;
         self.unlocking = false;

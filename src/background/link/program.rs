@@ -73,7 +73,8 @@ impl Link {
             }
             self.message(out, format_args!("{}", Place(finding)));
         }
-        self.begun |= !made.is_empty();
+        self.begun |= !made.is_empty() || compiler.holds();
+        self.busy |= compiler.holds();
         if compiler.is_ended() {
             let ends = made.back().is_some_and(|block| matches!(block.work, Work::End));
             if self.begun && !ends {
@@ -88,6 +89,17 @@ impl Link {
         self.pending = made;
         self.owes_ok = true;
         Ok(())
+    }
+
+    /// Lets the feed go out that the compiler holds back.
+    pub(super) fn let_go(&mut self) {
+        let pending = &mut self.pending;
+        self.compiler.flush(&mut |_, blocks| {
+            for block in blocks {
+                // cannot fail: it is empty, and a feed makes two blocks at most
+                let _ = pending.push_back(*block);
+            }
+        });
     }
 
     /// A compiler at the start of a program.

@@ -83,7 +83,7 @@ const fn of_text(kind: &DiagnosticKind) -> u8 {
         // bad number
         K::NumberMissing(_) | K::NumberMalformed(_) | K::NumberTooLong(_) => 2,
         // negative
-        K::DwellNegative(_) | K::Signed(_) => 4,
+        K::DwellNegative(_) | K::ToleranceNegative(_) | K::Signed(_) => 4,
         K::LineTooLong { .. } => 11,
         // zero or less
         K::FeedNotPositive(_) => 19,
@@ -116,16 +116,16 @@ const fn of_text(kind: &DiagnosticKind) -> u8 {
         // arc without offsets
         K::CentreMissing | K::ArcWordMissing(_) => 35,
         // unused words
-        K::ArcWordUnused(_) | K::DwellWordUnused(_) => 36,
+        K::ArcWordUnused(_) | K::DwellWordUnused(_) | K::ToleranceUnused { .. } => 36,
         K::ToolNumber(_) => 38,
-        // out of range
-        K::DwellTooLong(_) | K::DwellLong(_) | K::FeedCode(_) => 39,
+        // out of range; a tolerance that is missing is a warning, and no refusal
+        K::DwellTooLong(_) | K::DwellLong(_) | K::FeedCode(_) | K::ToleranceTooLarge(_) | K::ToleranceMissing(_) => 39,
         // above the largest feed
         K::FeedTooHigh { .. } => 43,
         // spindle speed
         K::SpindleSpeed(_) => 44,
         // words that exclude each other
-        K::AbsoluteAndIncremental { .. } | K::CentreAndRadius { .. } => 48,
+        K::AbsoluteAndIncremental { .. } | K::CentreAndRadius { .. } | K::ToleranceWithDwell(_) => 48,
         // program demarcation; the last two are of a whole program, which the link never checks
         K::TextAfterPercent | K::Empty | K::EndCodeMissing => 57,
         K::CommentOpen => 202,

@@ -3,6 +3,7 @@
 extern crate std;
 
 mod alarms;
+mod blends;
 mod commands;
 mod hostile;
 mod lines;
