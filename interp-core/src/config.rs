@@ -115,7 +115,7 @@ pub const fn speed_of(feed: Feedrate) -> u32 {
 }
 
 /// Clocks that last at least `ns`.
-const fn clocks(ns: u32) -> u32 {
+pub(crate) const fn clocks(ns: u32) -> u32 {
     to_u32((ns as u64).saturating_mul(12).saturating_add(999) / 1_000)
 }
 

@@ -10,6 +10,7 @@ pub mod compensation;
 pub mod config;
 pub mod curve;
 pub mod governor;
+pub mod group;
 pub mod math;
 pub mod ramp;
 pub mod ring;

@@ -69,6 +69,11 @@ pub struct Report {
     pub speed: Speed,
 }
 
+impl Report {
+    /// Of a channel that does nothing.
+    pub const IDLE: Self = Self { state: State::Idle, in_cycle: false, output: None, line: 0, speed: 0 };
+}
+
 /// A motion being executed.
 #[derive(Clone, Debug)]
 struct Active {
