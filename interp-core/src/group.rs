@@ -273,3 +273,27 @@ impl<const N: usize, const AHEAD: usize> Group<N, AHEAD> {
         reports.map(|report| report.unwrap_or(Report::IDLE))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    extern crate std;
+    use std::vec::Vec;
+
+    /// What a channel's shaper never makes, but a rule of the grid all the same.
+    #[test]
+    fn an_edge_on_the_tick_s_end_belongs_to_the_next_tick() {
+        let mut merge = Merge::new(Grid::new(2_000));
+        let mut tick = |changes: &[(u32, u16)]| {
+            changes.iter().for_each(|(clock, change)| merge.change(*clock, *change));
+            let mut events = Vec::new();
+            merge.play(&mut |event: Event| events.push((event.levels().bits(), event.interval())));
+            events
+        };
+        assert_eq!(tick(&[(11_977, 0x10), (1, 1), (24, 0x100)]), [(0, 24), (0x101, 11_976)]);
+        assert_eq!(tick(&[(48, 1)]), [(0x111, 48), (0x110, 11_952)]);
+        assert_eq!(tick(&[(11_976, 0x110)]), [(0x110, 11_976), (0, 24)]);
+        // up and down on one line is no event
+        assert_eq!(tick(&[(5, 1), (6, 1)]), [(0, 12_000)]);
+    }
+}
