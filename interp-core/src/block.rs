@@ -5,8 +5,19 @@
 //! joint with the block before may be taken without an axis jumping by more than its `max_jump`. It runs in the
 //! background; a block is all that the foreground gets.
 
+#[cfg(feature = "methods")]
+mod chain;
+#[cfg(feature = "methods")]
+mod pieces;
+#[cfg(feature = "methods")]
+pub use chain::Chain;
+#[cfg(feature = "methods")]
+pub use pieces::Pieces;
+
 use crate::config::{FRACTION_BITS, Machine, speed_of};
 use crate::curve::arc::Arc;
+#[cfg(feature = "methods")]
+use crate::curve::conic_piece::ConicPiece;
 use crate::curve::line::Line;
 use crate::curve::method::Method;
 use crate::curve::prepare_arc::{Metric, Prepared, Reach};
@@ -51,6 +62,9 @@ pub enum Curve {
     /// Straight by a classic method; from length to pulses of the major axis, 16 fraction bits.
     #[cfg(feature = "methods")]
     ClassicLine(Line, Proportion, Method),
+    /// A part of an ellipse or a parabola.
+    #[cfg(feature = "methods")]
+    Conic(ConicPiece),
 }
 
 impl Curve {
@@ -61,6 +75,8 @@ impl Curve {
             Self::Arc(arc) => arc.end(),
             #[cfg(feature = "methods")]
             Self::ClassicLine(line, ..) => line.end(),
+            #[cfg(feature = "methods")]
+            Self::Conic(piece) => piece.end(),
         }
     }
 }
@@ -374,6 +390,17 @@ impl Builder {
         };
         // at most two motions a curve: the capacity
         let _ = built.motions.push(motion);
+    }
+
+    /// The motion of one part of a curve that is made part by part; `limited` keeps what cuts its feed down most.
+    #[cfg(feature = "methods")]
+    fn chained(&mut self, curve: Curve, run: &Run, pace: Pace, limited: &mut Option<Limited>) -> Option<Motion> {
+        let mut built = Built::default();
+        self.finish(curve, run, pace, &mut built);
+        if built.limited.is_some_and(|new| limited.is_none_or(|known| new.speed < known.speed)) {
+            *limited = built.limited;
+        }
+        built.motions.pop()
     }
 }
 

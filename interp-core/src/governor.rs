@@ -101,10 +101,16 @@ impl Motion {
     /// than a 64th of the acceleration at the largest speed.
     #[inline]
     fn bend(&self) -> Option<Bend> {
-        let Curve::Arc(arc) = &self.curve else { return None };
-        let radius = arc.radius();
+        let (radius, angle) = match &self.curve {
+            Curve::Arc(arc) => (arc.radius(), arc.timeline.angle),
+            #[cfg(feature = "methods")]
+            Curve::Conic(piece) => (piece.radius, piece.angle),
+            Curve::Line(..) => return None,
+            #[cfg(feature = "methods")]
+            Curve::ClassicLine(..) => return None,
+        };
         let full = u64::from(self.accel).saturating_mul(radius);
-        (full >> 6 < square(self.limit)).then_some(Bend { full, radius, angle: arc.timeline.angle })
+        (full >> 6 < square(self.limit)).then_some(Bend { full, radius, angle })
     }
 
     /// The acceleration along the path where turning takes none, or next to none.
@@ -116,6 +122,8 @@ impl Motion {
             Curve::ClassicLine(..) => self.accel,
             // on wide arcs the 8192th part that turning may take at most
             Curve::Arc(_) => self.accel.wrapping_sub(self.accel >> 12),
+            #[cfg(feature = "methods")]
+            Curve::Conic(_) => self.accel.wrapping_sub(self.accel >> 12),
         }
     }
 

@@ -6,6 +6,8 @@
 
 #[cfg(feature = "methods")]
 mod classic;
+#[cfg(feature = "methods")]
+mod conic;
 mod cruise;
 pub mod follower;
 pub mod lookahead;

@@ -7,6 +7,8 @@
 
 #[cfg(feature = "methods")]
 use super::classic::{ChordRunner, ClassicRunner};
+#[cfg(feature = "methods")]
+use super::conic::ConicRunner;
 use super::superposed::Superposed;
 use crate::block::Curve;
 use crate::curve::arc::Arc;
@@ -64,7 +66,7 @@ impl<O: Train> Sink<'_, O> {
 
 /// Lattice lines from `next` to `to`, `next <= to`.
 #[inline]
-fn lines(next: i64, to: i64) -> u32 {
+pub(super) fn lines(next: i64, to: i64) -> u32 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a curve has less than 2^30 steps")]
     let count = (to.wrapping_sub(next) >> 16) as u32;
     count.wrapping_add(1)
@@ -72,7 +74,7 @@ fn lines(next: i64, to: i64) -> u32 {
 
 /// The lattice line `count` further.
 #[inline]
-fn further(next: i64, count: u32) -> i64 {
+pub(super) fn further(next: i64, count: u32) -> i64 {
     next.wrapping_add(i64::from(count) << 16)
 }
 
@@ -90,6 +92,9 @@ pub(super) enum Runner {
     /// A line or an arc by a classic method.
     #[cfg(feature = "methods")]
     Classic(super::classic::ClassicRunner),
+    /// A part of an ellipse or a parabola.
+    #[cfg(feature = "methods")]
+    Conic(ConicRunner),
 }
 
 impl Runner {
@@ -112,6 +117,8 @@ impl Runner {
             Curve::Arc(arc) => Self::Arc(ArcRunner::new(arc, length)),
             #[cfg(feature = "methods")]
             Curve::ClassicLine(line, pulses, method) => Self::Classic(ClassicRunner::line(*line, *pulses, *method)),
+            #[cfg(feature = "methods")]
+            Curve::Conic(piece) => Self::Conic(ConicRunner::new(piece)),
         }
     }
 
@@ -122,6 +129,8 @@ impl Runner {
             Self::Arc(runner) => runner.advance(length, stretch, sink),
             #[cfg(feature = "methods")]
             Self::Classic(runner) => runner.advance(length, stretch, sink),
+            #[cfg(feature = "methods")]
+            Self::Conic(runner) => runner.advance(length, stretch, sink),
         }
     }
 
@@ -132,11 +141,13 @@ impl Runner {
             Self::Arc(runner) => rest(&mut runner.walker, clock, sink),
             #[cfg(feature = "methods")]
             Self::Classic(runner) => runner.finish(clock, sink),
+            #[cfg(feature = "methods")]
+            Self::Conic(runner) => runner.finish(clock, sink),
         }
     }
 }
 
-fn rest(walker: &mut impl Walker, clock: u32, sink: &mut Sink<'_, impl Train>) {
+pub(super) fn rest(walker: &mut impl Walker, clock: u32, sink: &mut Sink<'_, impl Train>) {
     while let Some(owed) = walker.next_step() {
         sink.step(clock, owed);
     }
@@ -279,7 +290,7 @@ impl ArcRunner {
         if self.next <= to {
             let mut times = Times::new(self.at, to, self.next, stretch);
             while self.next <= to {
-                let mut made = self.row(lines(self.next, to), &mut times, sink);
+                let mut made = row(&mut self.walker, lines(self.next, to), &mut times, sink);
                 if made == 0 {
                     if !self.walker.in_zone() {
                         break;
@@ -293,33 +304,6 @@ impl ArcRunner {
         }
         self.at = to;
         self.reached = length;
-    }
-
-    /// Makes up to `due` steps of the octant in a row.
-    #[inline]
-    fn row(&mut self, due: u32, times: &mut Times, sink: &mut Sink<'_, impl Train>) -> u32 {
-        let due = due.min(self.walker.left_in_row());
-        if due == 0 {
-            return 0;
-        }
-        if self.walker.is_narrow() {
-            self.row_in::<i32>(due, times, sink)
-        } else {
-            self.row_in::<i64>(due, times, sink)
-        }
-    }
-
-    /// The same with the recurrence in words of one size.
-    #[inline(always)]
-    fn row_in<W: Word>(&mut self, due: u32, times: &mut Times, sink: &mut Sink<'_, impl Train>) -> u32 {
-        let strides = self.walker.strides();
-        let mut steps = 0;
-        self.walker.row::<W>(|row| {
-            let made = sink.row(times, due, &strides, || row.turns());
-            steps = made.steps;
-            (made.steps, made.diagonals)
-        });
-        steps
     }
 
     /// Leaves the zone at its end: owed steps, then the way over a gap between the zones but for its last step.
@@ -345,6 +329,29 @@ impl ArcRunner {
         };
         self.enter_zone(self.zone_to.min(self.length), i64::from(half).wrapping_neg());
     }
+}
+
+/// Makes up to `due` steps of the octant in a row.
+#[inline]
+pub(super) fn row(walker: &mut ArcWalker, due: u32, times: &mut Times, sink: &mut Sink<'_, impl Train>) -> u32 {
+    let due = due.min(walker.left_in_row());
+    if due == 0 {
+        return 0;
+    }
+    if walker.is_narrow() { row_in::<i32>(walker, due, times, sink) } else { row_in::<i64>(walker, due, times, sink) }
+}
+
+/// The same with the recurrence in words of one size.
+#[inline(always)]
+fn row_in<W: Word>(walker: &mut ArcWalker, due: u32, times: &mut Times, sink: &mut Sink<'_, impl Train>) -> u32 {
+    let strides = walker.strides();
+    let mut steps = 0;
+    walker.row::<W>(|row| {
+        let made = sink.row(times, due, &strides, || row.turns());
+        steps = made.steps;
+        (made.steps, made.diagonals)
+    });
+    steps
 }
 
 /// `clocks * part / whole`, at most `clocks`.

@@ -50,6 +50,11 @@ pub struct ArcWalker {
 impl Arc {
     /// A walker at the start.
     pub fn walk(&self) -> ArcWalker {
+        self.walk_from((0, 0))
+    }
+
+    /// A walker that begins at a lattice point of the curve, pulses from where coordinates count.
+    pub(crate) fn walk_from(&self, (x, z): (i32, i32)) -> ArcWalker {
         let mut walker = ArcWalker {
             arc: *self,
             piece: 0,
@@ -64,9 +69,9 @@ impl Arc {
             strides: Strides::default(),
             minors: 0,
             narrow: false,
-            x: 0,
-            z: 0,
-            target: (0, 0),
+            x,
+            z,
+            target: (x, z),
         };
         walker.enter(0, self.octant);
         walker

@@ -9,7 +9,7 @@
 //! An ellipse through two rounded ends is a little larger or smaller than the programmed one: by up to half a pulse at an
 //! end, and so by up to half a pulse times the ratio of its half axes elsewhere.
 //!
-//! These walks have no timeline yet: they tell where, not when.
+//! Where, not when: [`Pieces`](crate::block::Pieces) cuts a conic into parts that have a timeline.
 
 use super::arc::{Arc, Timeline};
 use super::arc_walker::ArcWalker;
@@ -67,17 +67,34 @@ impl core::fmt::Display for ConicRefusal {
 
 /// A prepared ellipse or parabola.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Conic(Arc);
+pub struct Conic {
+    arc: Arc,
+    /// Its coefficients in figures as large as 64 bits bear.
+    #[cfg(feature = "methods")]
+    fine: [i64; 4],
+}
 
 impl Conic {
     /// A walker at the start.
     pub fn walk(&self) -> ArcWalker {
-        self.0.walk()
+        self.arc.walk()
     }
 
     /// The end, X then Z, pulses from the start.
     pub const fn end(&self) -> (i32, i32) {
-        self.0.end()
+        self.arc.end()
+    }
+
+    /// The octants that it visits.
+    #[cfg(feature = "methods")]
+    pub(crate) const fn octants(&self) -> &Arc {
+        &self.arc
+    }
+
+    /// Its coefficients with gradients of up to 57 bits.
+    #[cfg(feature = "methods")]
+    pub(crate) const fn fine(&self) -> [i64; 4] {
+        self.fine
     }
 
     fn new(octants: Option<Octants>) -> Result<Self, ConicRefusal> {
@@ -92,7 +109,14 @@ impl Conic {
         };
         let centre = [centre(octants.a, octants.c), centre(octants.b, octants.d)];
         let timeline = Timeline { centre, ..Timeline::default() };
-        octants.arc(timeline).map(Self).ok_or(ConicRefusal::TooSmall)
+        #[cfg(feature = "methods")]
+        let fine = [octants.a, octants.b, octants.c, octants.d].map(to_i64);
+        let arc = octants.arc(timeline).ok_or(ConicRefusal::TooSmall)?;
+        Ok(Self {
+            arc,
+            #[cfg(feature = "methods")]
+            fine,
+        })
     }
 }
 

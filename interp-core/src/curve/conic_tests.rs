@@ -27,7 +27,7 @@ fn walked(conic: &Conic, off: impl Fn(i32, i32) -> f64) -> f64 {
 
 /// Distance of a point from the conic that was walked, in pulses, by Newton steps along the gradient.
 fn distance(conic: &Conic, (x, z): (i32, i32), (px, pz): (f64, f64)) -> f64 {
-    let [a, b, c, d] = [conic.0.a, conic.0.b, conic.0.c, conic.0.d].map(|v| v as f64);
+    let [a, b, c, d] = [conic.arc.a, conic.arc.b, conic.arc.c, conic.arc.d].map(|v| v as f64);
     let (x0, z0) = (f64::from(x), f64::from(z));
     let (mut x, mut z) = (x0, z0);
     for _ in 0..20 {

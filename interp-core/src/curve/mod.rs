@@ -12,11 +12,13 @@ pub mod arc;
 pub mod arc_walker;
 mod around;
 pub mod conic;
+#[cfg(feature = "methods")]
+pub mod conic_piece;
 pub mod dda;
 pub mod fraction;
 pub mod line;
 pub mod method;
-mod octants;
+pub(crate) mod octants;
 pub mod point_comparison;
 pub mod prepare_arc;
 pub mod proportion;

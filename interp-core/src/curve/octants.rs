@@ -126,30 +126,8 @@ impl Octants {
         if den < 0 { (num.wrapping_neg(), den.wrapping_neg()) } else { (num, den) }
     }
 
-    /// The lattice line of the minor axis nearest to the curve at `major`, half toward plus infinity.
     fn minor_at(&self, octant: u8, major: i32) -> i32 {
-        let m = i128::from(major);
-        let (am, cm, an, cn, above) = match Arc::major(octant) {
-            Axis::X => (self.a, self.c, self.b, self.d, octant.wrapping_add(2) & 7 < 4),
-            Axis::Z => (self.b, self.d, self.a, self.c, octant < 4),
-        };
-        // an n^2 - cn n + (am m^2 - cm m) = 0, so 2 an n - cn = +- root(cn^2 - 4 an (am m^2 - cm m))
-        let rest = am.times(m).wrapping_sub(cm).times(m);
-        if an == 0 {
-            // cn n = am m^2 - cm m, floor(n + 1/2)
-            let (top, bottom) = if cn < 0 { (rest.wrapping_neg(), cn.wrapping_neg()) } else { (rest, cn) };
-            let doubled = top.wrapping_mul(2).wrapping_add(bottom);
-            return to_i32(to_i64(doubled.quotient(bottom.wrapping_mul(2)).unwrap_or(0)));
-        }
-        let square = cn.times(cn).wrapping_sub(an.wrapping_mul(4).times(rest)).max(0).unsigned_abs();
-        let floor = root_wide(square);
-        let exact = u128::from(floor).wrapping_mul(u128::from(floor)) == square;
-        let gradient = i128::from(floor);
-        // floor(n + 1/2); a root cut off must be cut toward minus infinity
-        let top =
-            if above { cn.wrapping_add(gradient) } else { cn.wrapping_sub(gradient).wrapping_sub(i128::from(!exact)) };
-        let doubled = an.wrapping_mul(2);
-        to_i32(to_i64(top.wrapping_add(an).quotient(doubled).unwrap_or(0)))
+        minor_at([self.a, self.b, self.c, self.d], octant, major)
     }
 
     /// The octants laid out; `None` where they do not lead to the end.
@@ -257,4 +235,30 @@ impl Octants {
         let line = if sign > 0 || floor.times(den) == num { floor } else { floor.wrapping_add(1) };
         to_i32(to_i64(line))
     }
+}
+
+/// The lattice line of the minor axis nearest to a conic at `major`, half toward plus infinity.
+pub(crate) fn minor_at([a, b, c, d]: [i128; 4], octant: u8, major: i32) -> i32 {
+    let m = i128::from(major);
+    let (am, cm, an, cn, above) = match Arc::major(octant) {
+        Axis::X => (a, c, b, d, octant.wrapping_add(2) & 7 < 4),
+        Axis::Z => (b, d, a, c, octant < 4),
+    };
+    // an n^2 - cn n + (am m^2 - cm m) = 0, so 2 an n - cn = +- root(cn^2 - 4 an (am m^2 - cm m))
+    let rest = am.times(m).wrapping_sub(cm).times(m);
+    if an == 0 {
+        // cn n = am m^2 - cm m, floor(n + 1/2)
+        let (top, bottom) = if cn < 0 { (rest.wrapping_neg(), cn.wrapping_neg()) } else { (rest, cn) };
+        let doubled = top.wrapping_mul(2).wrapping_add(bottom);
+        return to_i32(to_i64(doubled.quotient(bottom.wrapping_mul(2)).unwrap_or(0)));
+    }
+    let square = cn.times(cn).wrapping_sub(an.wrapping_mul(4).times(rest)).max(0).unsigned_abs();
+    let floor = root_wide(square);
+    let exact = u128::from(floor).wrapping_mul(u128::from(floor)) == square;
+    let gradient = i128::from(floor);
+    // floor(n + 1/2); a root cut off must be cut toward minus infinity
+    let top =
+        if above { cn.wrapping_add(gradient) } else { cn.wrapping_sub(gradient).wrapping_sub(i128::from(!exact)) };
+    let doubled = an.wrapping_mul(2);
+    to_i32(to_i64(top.wrapping_add(an).quotient(doubled).unwrap_or(0)))
 }

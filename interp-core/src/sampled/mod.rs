@@ -54,6 +54,12 @@ pub enum CurveRefusal {
     Knots,
     /// A point is past ±2.1 m.
     OutOfRange,
+    /// It bends more often, or more sharply, than its parameter can be divided.
+    TooFine,
+    /// It begins somewhere else than where the tool is.
+    Elsewhere,
+    /// All of it rounds to one lattice point.
+    NoPulse,
 }
 
 impl core::fmt::Display for CurveRefusal {
@@ -61,10 +67,13 @@ impl core::fmt::Display for CurveRefusal {
         f.write_str(match self {
             Self::Degenerate => "the curve has no extent: give it a positive size and a way to go",
             Self::RepeatedPoint => "two neighbouring points are the same: leave one out",
-            Self::Points => "the curve has too few points or too many",
-            Self::Weight => "a weight must be a positive number up to 65536",
-            Self::Knots => "the knots must not fall, and must be as many as points plus degree plus one",
-            Self::OutOfRange => "the curve leaves the range of 2.1 m",
+            Self::Points => "the curve has too few points or too many: give at least degree plus one, or two",
+            Self::Weight => "a weight is no positive number up to 65536: give one such as 1 or 0.5",
+            Self::Knots => "the knots fall, stay too long or do not fit: give as many as points plus degree plus one, rising, inside none more often than the degree",
+            Self::OutOfRange => "the curve leaves the range of 2.1 m: move it or shorten it",
+            Self::TooFine => "the curve has more or sharper bends than can be told apart: divide it into several",
+            Self::Elsewhere => "the curve does not begin where the tool is: move there first",
+            Self::NoPulse => "the whole curve is within one pulse: leave it out",
         })
     }
 }
@@ -82,8 +91,8 @@ pub struct Chords<C> {
 }
 
 impl<C: Sampled> Chords<C> {
-    /// Shortest part of the parameter that a chord spans, whatever the tolerance: it ends the halving.
-    pub const SHORTEST: u64 = 1 << 8;
+    /// Shortest part of the parameter that a chord spans: where that is too long still, the curve is refused.
+    pub const SHORTEST: u64 = 1 << 4;
 
     /// Chords that leave the curve by at most `tolerance` nm (below 1 counts as 1).
     pub fn new(curve: C, tolerance: u32) -> Self {
@@ -91,6 +100,16 @@ impl<C: Sampled> Chords<C> {
         let span = curve.longest().clamp(Self::SHORTEST, WHOLE);
         let tolerance = u64::from(tolerance.max(1)) << FRACTION;
         Self { curve, parameter: 0, span, from, tolerance: tolerance.wrapping_sub(tolerance / 10), refused: false }
+    }
+
+    /// The curve that is divided.
+    pub const fn curve(&self) -> &C {
+        &self.curve
+    }
+
+    /// Parameter at which the chord given last ends.
+    pub const fn parameter(&self) -> u64 {
+        self.parameter
     }
 
     /// Whether the chord to `end` is near enough: the curve at its quarters.
@@ -113,7 +132,7 @@ impl<C: Sampled> Chords<C> {
 }
 
 /// Length of a vector.
-fn distance(x: i64, z: i64) -> u64 {
+pub(crate) fn distance(x: i64, z: i64) -> u64 {
     // coordinates are below 2^45
     let (x, z) = (i128::from(x), i128::from(z));
     root_wide(x.times(x).wrapping_add(z.times(z)).unsigned_abs())
@@ -135,9 +154,18 @@ impl<C: Sampled> Iterator for Chords<C> {
         let left = WHOLE.wrapping_sub(self.parameter);
         let mut span = self.span.min(left);
         let mut to = self.curve.at(self.parameter.wrapping_add(span));
-        while span > Self::SHORTEST && !self.holds(span, to) {
+        let fine = self.curve.longest() >= Self::SHORTEST;
+        while fine && !self.holds(span, to) {
+            if span <= Self::SHORTEST {
+                self.refused = true;
+                break;
+            }
             span >>= 1;
             to = self.curve.at(self.parameter.wrapping_add(span));
+        }
+        if self.refused || !fine {
+            self.refused = true;
+            return Some(Err(CurveRefusal::TooFine));
         }
         self.parameter = self.parameter.wrapping_add(span);
         self.span = span.wrapping_mul(2).min(self.curve.longest()).max(Self::SHORTEST);
