@@ -1,19 +1,20 @@
 //! The command `compare-methods`: what each pulse method does on a line and on an arc through several quadrants.
 //!
-//! Each method's steps are those that the channel plays, decoded from its train, on pulses so coarse that single steps
+//! A third sheet, of [`compare_curves`], has every kind of curve. Each method's steps are those that the channel plays, decoded from its train, on pulses so coarse that single steps
 //! show.
 
 use std::io::{self, Write};
 use std::path::Path;
 
 use handcnc::background::parameters::Parameters;
-use interp_core::block::{Block, Builder, Pace, Path as Way, Work};
+use interp_core::block::{Block, Builder, Motion, Pace, Path as Way, Work};
 use interp_core::channel::{Channel, State};
 use interp_core::config::Machine;
 use interp_core::curve::method::Method;
 use interp_core::train::{Event, Levels};
 use interp_core::units::{Axis, Feedrate, Lattice, Length, Point, Sense};
 
+use crate::compare_curves;
 use crate::output::{Pending, Places};
 use crate::picture::{self, Panel, TrueCurve};
 
@@ -45,19 +46,23 @@ const SAMPLES: [Sample; 2] = [
     },
 ];
 
-/// Draws both comparisons into `folder`; gives what was written.
+/// Draws all comparisons into `folder`; gives what was written.
 ///
 /// # Errors
 /// Those of writing.
 pub fn compare(folder: &Path, out: &mut impl Write) -> io::Result<()> {
     let mut places = Places::default();
     std::fs::create_dir_all(folder)?;
-    for sample in &SAMPLES {
-        let panels: Vec<_> = Method::ALL.into_iter().map(|method| sample.panel(method)).collect();
-        let svg = picture::methods(sample.title, &panels);
+    let sheets = SAMPLES.iter().map(|sample| {
+        let panels = Method::ALL.into_iter().map(|method| sample.panel(method)).collect();
+        (sample.name, sample.title, panels)
+    });
+    let curves = std::iter::once((compare_curves::NAME, compare_curves::TITLE, compare_curves::panels()));
+    for (name, title, panels) in sheets.chain(curves) {
+        let svg = picture::methods(title, &panels);
         let png = picture::png(&svg, WIDTH_PX).map_err(io::Error::other)?;
         for (ending, bytes) in [("svg", svg.as_bytes()), ("png", &png)] {
-            let path = folder.join(sample.name).with_extension(ending);
+            let path = folder.join(name).with_extension(ending);
             places.output(&path)?;
             let mut file = Pending::create(&path)?;
             file.writer().write_all(bytes)?;
@@ -84,7 +89,7 @@ impl Sample {
             TrueCurve::Line { from: place(self.from), to: place(self.to) }
         };
         let title = if falls_back { format!("{} (lines only)", method.name()) } else { method.name().into() };
-        Panel { title, curve, steps: steps.into_iter().map(place).collect(), errors }
+        Panel { title, curve: picture::polyline(&curve), steps: steps.into_iter().map(place).collect(), errors }
     }
 
     /// Signed distance from the curve, pulses.
@@ -105,34 +110,42 @@ impl Sample {
         let way = if self.round { Way::Arc { centre: (0, 0), sense: Sense::CounterClockwise } } else { Way::Line };
         let pace = Feedrate::from_nm_per_min(60_000_000).map_or(Pace::Rapid, Pace::Feed);
         let built = builder.motion(way, point(self.to), pace);
-        let work = built.motions.iter().map(|motion| Work::Motion(*motion)).chain([Work::End]);
-        let mut blocks = work.map(|work| Block { line: 1, work });
-        let mut channel = Channel::<8>::new(&machine, Lattice { x: self.from.0, z: self.from.1 });
-        channel.start();
-        let (mut at, mut levels, mut steps) = (self.from, Levels::LOW, vec![self.from]);
-        while channel.state() != State::Ended {
-            let mut play = |event: Event| {
-                let now = event.levels();
-                let rises = |axis| now.step(axis) && !levels.step(axis);
-                let (x, z) = (rises(Axis::X), rises(Axis::Z));
-                let pulse = |axis| if now.plus(axis) { 1 } else { -1 };
-                at = (at.0 + if x { pulse(Axis::X) } else { 0 }, at.1 + if z { pulse(Axis::Z) } else { 0 });
-                if x || z {
-                    steps.push(at);
-                }
-                levels = now;
-            };
-            channel.tick(&mut || blocks.next(), &mut play);
-        }
-        steps
+        play(&machine, Lattice { x: self.from.0, z: self.from.1 }, &built.motions)
     }
 }
 
-fn length(pulses: i32) -> Length {
+/// The lattice points that the channel's train visits on these motions: X, Z.
+pub(crate) fn play(machine: &Machine, from: Lattice, motions: &[Motion]) -> Vec<(i32, i32)> {
+    let work = motions.iter().map(|motion| Work::Motion(*motion)).chain([Work::End]);
+    let mut blocks = work.map(|work| Block { line: 1, work });
+    let mut channel = Channel::<8>::new(machine, from);
+    channel.start();
+    let start = (from.x, from.z);
+    let (mut at, mut levels, mut steps) = (start, Levels::LOW, vec![start]);
+    while channel.state() != State::Ended {
+        let mut play = |event: Event| {
+            let now = event.levels();
+            let rises = |axis| now.step(axis) && !levels.step(axis);
+            let (x, z) = (rises(Axis::X), rises(Axis::Z));
+            let pulse = |axis| if now.plus(axis) { 1 } else { -1 };
+            at = (at.0 + if x { pulse(Axis::X) } else { 0 }, at.1 + if z { pulse(Axis::Z) } else { 0 });
+            if x || z {
+                steps.push(at);
+            }
+            levels = now;
+        };
+        channel.tick(&mut || blocks.next(), &mut play);
+    }
+    steps
+}
+
+/// So many pulses.
+pub(crate) fn length(pulses: i32) -> Length {
     Length::from_um(pulses * PULSE_UM).unwrap_or_default()
 }
 
-fn machine(method: Method) -> Machine {
+/// A machine with coarse pulses.
+pub(crate) fn machine(method: Method) -> Machine {
     let mut parameters = Parameters::new();
     for (name, value) in [("x.pulse_nm", "10000"), ("z.pulse_nm", "10000"), ("method", method.name())] {
         // names and values of this list are right: a test runs it

@@ -5,6 +5,7 @@
 //! an independent checker (the crate `measure`) and draws what the pulses did ([`picture`]). [`turn`] puts that
 //! together as the command `turn`. [`serve`] runs the same lathe for a sender at a TCP port.
 
+mod compare_curves;
 pub mod compare_methods;
 pub mod course;
 pub mod dimensions;

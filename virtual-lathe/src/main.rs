@@ -25,7 +25,8 @@ enum Command {
     Serve(Serve),
     /// Run the programs that come with the lathe, and show them on one page.
     Examples(Examples),
-    /// Draw what each pulse method does on a line and on an arc: out/methods-line and out/methods-arc, SVG and PNG.
+    /// Draw what each pulse method does on a line and on an arc, and every kind of curve: methods-line, methods-arc and
+    /// curves in out/, SVG and PNG.
     CompareMethods,
     /// List all parameters with units, ranges and defaults.
     Parameters,

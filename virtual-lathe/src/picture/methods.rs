@@ -1,4 +1,4 @@
-//! The sheet of `compare-methods`: a panel for each method, its steps over the true curve and their error below.
+//! A sheet of `compare-methods`: a panel for each method or curve, its steps over the true curve and their error below.
 
 use crate::picture::TrueCurve;
 use crate::picture::pen::{Anchor, GREY, INK, Pen, Point, Stroke};
@@ -8,8 +8,8 @@ use crate::picture::pen::{Anchor, GREY, INK, Pen, Point, Stroke};
 pub struct Panel {
     /// Name of the method.
     pub title: String,
-    /// What should be followed.
-    pub curve: TrueCurve,
+    /// What should be followed, as a polyline.
+    pub curve: Vec<[f64; 2]>,
     /// Lattice points visited.
     pub steps: Vec<[f64; 2]>,
     /// Signed distance of each from the curve, pulses.
@@ -46,8 +46,8 @@ pub fn methods(title: &str, panels: &[Panel]) -> String {
     pen.finish()
 }
 
-/// The true curve as a polyline.
-fn polyline(curve: &TrueCurve) -> Vec<[f64; 2]> {
+/// A true curve as a polyline.
+pub fn polyline(curve: &TrueCurve) -> Vec<[f64; 2]> {
     match *curve {
         TrueCurve::Line { from, to } => vec![from, to],
         TrueCurve::Arc { centre, from, to, clockwise } => {
@@ -70,11 +70,11 @@ fn draw(pen: &mut Pen, panel: &Panel, [left, top]: Point) {
     let label = format!("at most {worst:.2} pulses");
     pen.text("worst", [left + FIELD[0], top + 18.0], 12.0, Anchor::End, GREY, &label);
     let top = top + 28.0;
-    let curve = polyline(&panel.curve);
+    let curve = &panel.curve;
     // the smallest or largest [z, x] of all points
     let bound = |pick: fn(f64, f64) -> f64, start: f64| {
         let join = |[z, x]: [f64; 2], at: &[f64; 2]| [pick(z, at[0]), pick(x, at[1])];
-        panel.steps.iter().chain(&curve).fold([start; 2], join)
+        panel.steps.iter().chain(curve).fold([start; 2], join)
     };
     let low = bound(f64::min, f64::MAX).map(|least| least.floor() - 1.0);
     let high = bound(f64::max, f64::MIN).map(|most| most.ceil() + 1.0);

@@ -27,7 +27,7 @@ mod view;
 
 pub use chart::{Chart, Look, Series, Strip};
 pub use film::{Film, Form};
-pub use methods::{Panel, methods};
+pub use methods::{Panel, methods, polyline};
 pub use raster::{PictureError, png};
 pub use thin::Thinner;
 
