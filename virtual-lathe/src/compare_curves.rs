@@ -20,7 +20,7 @@ use crate::picture::Panel;
 /// Name of the files.
 pub(crate) const NAME: &str = "curves";
 /// Title of the sheet.
-pub(crate) const TITLE: &str = "Every kind of curve, 10 um pulses";
+pub(crate) const TITLE: &str = "Every kind of curve, pulses of 10 \u{b5}m";
 
 /// What makes a curve's motions from where the builder stands.
 type Build = fn(&mut Builder) -> Vec<Motion>;
@@ -85,7 +85,7 @@ const KINDS: [Kind; 10] = [
         |b| chain(b, Spiral::new(zero(), (length(2), length(13)), 0, angle(TAU * 2.5, 30))),
     ),
     Kind("cubic spline", spline_at, |b| chain(b, spline())),
-    Kind("NURBS: three quarters of a circle", quarters_at, |b| {
+    Kind("NURBS, three quarters", quarters_at, |b| {
         let weights = [Weight::ONE, Weight::parse("0.70710678118").unwrap_or(Weight::ONE)];
         let corners = [(0, 12), (12, 12), (12, 0), (12, -12), (0, -12), (-12, -12), (-12, 0)];
         let control: Vec<_> = corners.iter().zip(weights.iter().cycle()).map(|(at, w)| (point(*at), *w)).collect();
