@@ -99,7 +99,9 @@ proptest! {
         // in a hairpin a step does not tell how far along it is, and the speed has to drop
         if sample.is_wide() {
             let (behind, ahead) = played.feed_error(&machine, &sample, feed);
-            prop_assert!(behind >= -4.0 && ahead <= 4.0, "{sample:?}: {behind} to {ahead} pulses off in a window");
+            // a step is so far from its place at both ends of a window; a walked ellipse may be a little larger, too
+            let most = 4.0 + 2.0 * (sample.bound() - 1.5);
+            prop_assert!(behind >= -most && ahead <= most, "{sample:?}: {behind} to {ahead} pulses off in a window");
         }
     }
 }
