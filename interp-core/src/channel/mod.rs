@@ -13,6 +13,7 @@ pub mod follower;
 pub mod lookahead;
 mod runner;
 pub mod superposed;
+mod walk;
 
 use crate::block::{Block, Motion, Output, Speed, Work};
 use crate::compensation::Compensation;
@@ -87,6 +88,21 @@ struct Active {
     pace: Speed,
     paced_at: u16,
     cruise: Cruise,
+}
+
+impl Active {
+    /// At the start of `motion`.
+    #[inline(always)]
+    fn new(motion: &Motion, feed_override: u16) -> Self {
+        Self {
+            runner: Runner::new(&motion.curve, motion.length),
+            done: 0,
+            pace: pace(motion, feed_override),
+            paced_at: feed_override,
+            cruise: Cruise::new(),
+            motion: *motion,
+        }
+    }
 }
 
 /// What is being executed.
@@ -389,14 +405,7 @@ impl<const N: usize> Channel<N> {
                     // what braking could not shed of a lowered feed goes on; what the machine can't take does not
                     self.speed.min(motion.joint).min(motion.limit)
                 };
-                self.current = Current::Motion(Active {
-                    runner: Runner::new(&motion.curve, motion.length),
-                    done: 0,
-                    pace: pace(motion, self.feed_override),
-                    paced_at: self.feed_override,
-                    cruise: Cruise::new(),
-                    motion: *motion,
-                });
+                self.current = Current::Motion(Active::new(motion, self.feed_override));
             }
             Work::Dwell(ticks) => {
                 self.current = Current::Dwell(u64::from(ticks).wrapping_mul(u64::from(TICK_CLOCKS)));
