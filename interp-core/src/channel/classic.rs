@@ -13,6 +13,8 @@
 //! than half a pulse is divided. The chord's ends are rounded, so up to half a diagonal of the lattice off, and its walk is
 //! half a pulse off the chord: 1.21 pulses at worst besides the chord's own error.
 
+mod back;
+
 use super::runner::{Sink, share};
 use crate::curve::arc::Arc;
 use crate::curve::dda::{IntegratedArc, IntegratedLine};
@@ -169,11 +171,13 @@ pub(super) struct PulseRunner {
     /// A step that is not due yet.
     waiting: Option<Step>,
     quadrants: u8,
+    /// The walker walks the reversed arc.
+    back: bool,
 }
 
 impl PulseRunner {
     fn new(walker: PulseWalker, pulses: Pulses) -> Self {
-        Self { walker, pulses, at: 0, made: 0, waiting: None, quadrants: 0 }
+        Self { walker, pulses, at: 0, made: 0, waiting: None, quadrants: 0, back: false }
     }
 
     fn next(&mut self) -> Option<Step> {
@@ -181,6 +185,7 @@ impl PulseRunner {
     }
 
     fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl Train>) {
+        self.face(false);
         if matches!(&self.pulses, Pulses::Arc(round) if length >= round.length) {
             return self.last(stretch, sink);
         }
@@ -196,31 +201,19 @@ impl PulseRunner {
             let part = due.wrapping_sub(self.at).max(0).unsigned_abs();
             sink.step(stretch.from.wrapping_add(share(stretch.clocks, part, whole)), step);
             self.made = counted;
-            let quadrants = self.walker.quadrants_entered();
-            if quadrants != self.quadrants {
-                self.quadrants = quadrants;
-                if let Pulses::Arc(round) = &self.pulses {
-                    self.made = round.border(self.made);
-                }
-            }
+            self.turn_quadrant();
         }
         self.at = to;
     }
-}
 
-impl PulseRunner {
-    /// Makes all steps that are left of an arc, evenly: on its last stretch a pulse more or less than the timeline's is
-    /// spread over all.
-    fn last(&mut self, stretch: Stretch, sink: &mut Sink<'_, impl Train>) {
-        let mut ahead = self.clone();
-        let mut left = 1_u64;
-        while ahead.next().is_some() {
-            left = left.wrapping_add(1);
-        }
-        let mut part = 0;
-        while let Some(step) = self.next() {
-            part = u64::wrapping_add(part, 1);
-            sink.step(stretch.from.wrapping_add(share(stretch.clocks, part, left)), step);
+    /// Puts an arc's walker back on the timeline where it has changed the quadrant.
+    fn turn_quadrant(&mut self) {
+        let quadrants = self.walker.quadrants_entered();
+        if quadrants != self.quadrants {
+            self.quadrants = quadrants;
+            if let Pulses::Arc(round) = &self.pulses {
+                self.made = round.border(self.made);
+            }
         }
     }
 }
@@ -358,17 +351,23 @@ impl ChordRunner {
         Self { round, longest: longest.max(1), length: arc.length(), reached: 0, at: (0, 0), end: arc.end }
     }
 
+    /// Advances or goes back: the points are functions of the length, the chords between them depend on the ticks.
     fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl Train>) {
-        let advance = length.saturating_sub(self.reached);
+        let advance = length.abs_diff(self.reached);
         let chords = advance.checked_div(self.longest).unwrap_or(0).wrapping_add(1);
         let mut from = stretch.from;
         let mut chord = 0_u64;
         while chord < chords {
             chord = chord.wrapping_add(1);
             let part = advance.wrapping_mul(chord).checked_div(chords).unwrap_or(advance);
-            let to = self.reached.wrapping_add(part);
+            let to =
+                if length < self.reached { self.reached.wrapping_sub(part) } else { self.reached.wrapping_add(part) };
             let until = stretch.from.wrapping_add(share(stretch.clocks, chord, chords));
-            let point = if to >= self.length { self.end } else { self.round.place(to) };
+            let point = match to {
+                0 => (0, 0),
+                to if to >= self.length => self.end,
+                to => self.round.place(to),
+            };
             self.chord(point, Stretch { from, clocks: until.wrapping_sub(from) }, sink);
             from = until;
         }

@@ -5,6 +5,11 @@
 //! passes the next lattice line. Since the coordinate comes from the length itself and is not summed up, no error
 //! grows along the curve; at the end of a zone and of the curve whatever step is still owed is made.
 
+mod back;
+
+#[cfg(feature = "methods")]
+pub(super) use back::passed;
+
 #[cfg(feature = "methods")]
 use super::classic::{ChordRunner, ClassicRunner};
 #[cfg(feature = "methods")]
@@ -19,7 +24,7 @@ use crate::curve::method::Method;
 use crate::curve::proportion::Proportion;
 use crate::curve::strides::Strides;
 use crate::curve::{Step, Walker};
-use crate::math::{sine, to_u32, to_u64};
+use crate::math::{sine, to_u32};
 use crate::shaper::{Made, Shaper};
 use crate::times::{PULSE, Stretch, Times};
 use crate::train::Train;
@@ -70,6 +75,12 @@ pub(super) fn lines(next: i64, to: i64) -> u32 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a curve has less than 2^30 steps")]
     let count = (to.wrapping_sub(next) >> 16) as u32;
     count.wrapping_add(1)
+}
+
+/// Whether the last step, due a pulse before `next`, is to be undone where the coordinate falls to `to`.
+#[inline]
+const fn lines_back(next: i64, to: i64) -> bool {
+    next.wrapping_sub(PULSE) > to
 }
 
 /// The lattice line `count` further.
@@ -244,9 +255,8 @@ impl ArcRunner {
         self.radius_shift = excess;
         self.angle = angle;
         self.zone_from = from;
-        let span = i64::from(half).wrapping_sub(angle).max(0).unsigned_abs();
-        let reach = to_u64((i128::from(timeline.radius)).wrapping_mul(i128::from(span)) >> 30);
-        self.zone_to = if self.walker.last_zone() { u64::MAX } else { from.saturating_add(reach) };
+        let end = Self::zone_end(self.walker.arc(), from, i64::from(half).wrapping_sub(angle));
+        self.zone_to = if self.walker.last_zone() { u64::MAX } else { end };
         self.at = self.coordinate(from);
         let (x, z) = self.walker.target();
         let [centre_x, centre_z] = timeline.centre;

@@ -77,6 +77,18 @@ impl Arc {
         walker
     }
 
+    /// A walker at the end.
+    pub fn walk_from_end(&self) -> ArcWalker {
+        let mut walker = self.walk();
+        while walker.piece.wrapping_add(1) < self.pieces {
+            walker.piece = walker.piece.wrapping_add(1);
+            walker.octant = Self::octant_after(walker.octant, self.sense);
+        }
+        (walker.x, walker.z) = self.end;
+        walker.stand_at_end_of_octant(self.end);
+        walker
+    }
+
     fn steps_of(&self, piece: u8) -> u32 {
         self.steps.get(usize::from(piece)).copied().unwrap_or(0)
     }
@@ -153,6 +165,66 @@ impl ArcWalker {
             }
         }
         false
+    }
+
+    /// Octants entered since the start.
+    pub(crate) const fn piece(&self) -> u8 {
+        self.piece
+    }
+
+    /// Whether no step of the present zone is made: of a joint into it only the last step belongs to it.
+    pub(crate) fn at_zone_start(&self) -> bool {
+        let (mut piece, mut octant, mut done, mut at) = (self.piece, self.octant, self.done, (self.x, self.z));
+        let mut first = self.target;
+        while done == 0 && piece > 0 {
+            piece = piece.wrapping_sub(1);
+            octant = Arc::octant_before(octant, self.arc.sense);
+            let joint = self.arc.joint_of(piece);
+            if Arc::ends_at_tangent(octant, self.arc.sense) {
+                return joint == (0, 0) || at != first;
+            }
+            // a joint between the two octants of the zone
+            let last = (first.0.wrapping_sub(joint.0), first.1.wrapping_sub(joint.1));
+            if at != last {
+                return false;
+            }
+            (at, first, done) = (last, last, self.arc.steps_of(piece));
+        }
+        done == 0
+    }
+
+    /// Goes back into the octant before, at whose end the walker stands; walks nothing.
+    pub(crate) fn enter_octant_before(&mut self) {
+        self.piece = self.piece.wrapping_sub(1);
+        self.octant = Arc::octant_before(self.octant, self.arc.sense);
+        self.stand_at_end_of_octant((self.x, self.z));
+    }
+
+    /// Sets the recurrence of the present octant up for its last point.
+    fn stand_at_end_of_octant(&mut self, last: (i32, i32)) {
+        self.steps = self.arc.steps_of(self.piece);
+        self.done = self.steps;
+        self.target = last;
+        self.set_up(last.0, last.1);
+    }
+
+    /// One step back on the joint into the present octant, none of whose own steps is made; `None` at the near end.
+    pub(crate) fn joint_step_back(&mut self) -> Option<Step> {
+        let joint = self.arc.joint_of(self.piece.wrapping_sub(1));
+        let last = (self.target.0.wrapping_sub(joint.0), self.target.1.wrapping_sub(joint.1));
+        if (self.x, self.z) == last {
+            return None;
+        }
+        // find the point before this one on the way from `last` to `target`
+        let mut point = last;
+        loop {
+            let next = self.arc.bridge(point, self.target);
+            if next == (self.x, self.z) || next == point {
+                break;
+            }
+            point = next;
+        }
+        Some(self.go(point))
     }
 
     /// The first lattice point of the octant entered last: where its joint leads.
@@ -471,26 +543,10 @@ impl Walker for ArcWalker {
             if self.piece == 0 {
                 return None;
             }
-            let joint = self.arc.joint_of(self.piece.wrapping_sub(1));
-            let last = (self.target.0.wrapping_sub(joint.0), self.target.1.wrapping_sub(joint.1));
-            if (self.x, self.z) != last {
-                // find the point before this one on the way from `last` to `target`
-                let mut point = last;
-                loop {
-                    let next = self.arc.bridge(point, self.target);
-                    if next == (self.x, self.z) || next == point {
-                        break;
-                    }
-                    point = next;
-                }
-                return Some(self.go(point));
+            if let Some(step) = self.joint_step_back() {
+                return Some(step);
             }
-            self.piece = self.piece.wrapping_sub(1);
-            self.octant = Arc::octant_before(self.octant, self.arc.sense);
-            self.steps = self.arc.steps_of(self.piece);
-            self.done = self.steps;
-            self.target = last;
-            self.set_up(last.0, last.1);
+            self.enter_octant_before();
         }
     }
 }

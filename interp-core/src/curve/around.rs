@@ -103,15 +103,40 @@ impl Around {
         }
     }
 
-    /// From here back to the start.
+    /// At the end of `arc`.
+    pub(crate) fn end_of(arc: &Arc) -> Self {
+        let start = Self::arc(arc);
+        let slope = |weight: i64, end: i32, c: i64| weight.wrapping_mul(2).wrapping_mul(i64::from(end)).wrapping_sub(c);
+        Self {
+            deviation: arc.residual(arc.end.0, arc.end.1),
+            gradient: [slope(arc.a, arc.end.0, arc.c), slope(arc.b, arc.end.1, arc.d)],
+            at: arc.end,
+            entered: start.to_enter,
+            to_enter: 0,
+            ..start
+        }
+    }
+
+    /// From here back to the start; turned round again, on to the end.
     pub(crate) const fn reversed(&self) -> Self {
         Self {
-            start: self.at,
+            start: self.end,
             end: self.start,
             clockwise: !self.clockwise,
-            entered: 0,
+            entered: self.to_enter,
             to_enter: self.entered,
             ..*self
+        }
+    }
+
+    #[cfg(feature = "methods")]
+    /// Takes a step back that led here, before any other is made after turning round.
+    pub(crate) const fn take_back(&mut self, step: Step) {
+        if step.x != 0 {
+            self.pulse(Axis::X, step.x > 0);
+        }
+        if step.z != 0 {
+            self.pulse(Axis::Z, step.z > 0);
         }
     }
 

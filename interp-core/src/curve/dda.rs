@@ -19,6 +19,8 @@
 use super::arc::Arc;
 use super::around::{Around, Ending};
 use super::line::Line;
+#[cfg(feature = "methods")]
+use super::point_comparison::ComparedArc;
 use super::{OneWay, Step, Walker};
 use crate::math::{root_wide, to_i64};
 use crate::units::{Axis, Sense};
@@ -94,6 +96,14 @@ impl IntegratedLine {
     }
 }
 
+impl IntegratedLine {
+    /// At the end of `line`: the registers are as at first.
+    pub const fn end_of(line: Line) -> Self {
+        let start = Self::new(line);
+        Self { done: start.iterations, ..start }
+    }
+}
+
 impl Walker for IntegratedLine {
     fn next_step(&mut self) -> Option<Step> {
         // the major count is at least half the register's size, so at most two iterations go by without a pulse
@@ -138,6 +148,12 @@ impl IntegratedArc {
     /// As [`ComparedArc::circle`](super::point_comparison::ComparedArc::circle).
     pub fn circle(from: (i32, i32), to: (i32, i32), sense: Sense) -> Option<Self> {
         Some(Self::around(Around::circle(from, to, sense)?))
+    }
+
+    #[cfg(feature = "methods")]
+    /// The same point for [`ComparedArc`], which holds to the curve from wherever it is.
+    pub(crate) const fn compared(&self) -> ComparedArc {
+        ComparedArc::from_around(self.around)
     }
 
     fn around(around: Around) -> Self {

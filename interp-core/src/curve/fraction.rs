@@ -51,6 +51,18 @@ impl FractionLine {
     }
 }
 
+impl FractionLine {
+    /// At the end of `line`.
+    pub fn end_of(line: Line) -> Self {
+        let start = Self::new(line);
+        // the register takes alpha modulo its size
+        let sum = start.alpha.wrapping_mul(start.steps) & (1_u32.wrapping_shl(BITS)).wrapping_sub(1);
+        let mut register = start.register;
+        register.add(sum);
+        Self { register, done: start.steps, ..start }
+    }
+}
+
 impl Walker for FractionLine {
     fn next_step(&mut self) -> Option<Step> {
         if self.done == self.steps {

@@ -57,6 +57,14 @@ impl Line {
     }
 }
 
+impl Line {
+    /// A walker at the end.
+    pub const fn walk_from_end(self) -> LineWalker {
+        // the remainder has come round: in all it rose by `steps * rise`, a multiple of `turn`
+        LineWalker { done: self.steps(), ..self.walk() }
+    }
+}
+
 impl LineWalker {
     /// Steps that remain.
     #[inline]

@@ -83,6 +83,23 @@ impl ComparedArc {
         Some(Self { around: Around::circle(from, to, sense)? })
     }
 
+    /// At the end of a prepared arc.
+    pub fn end_of(arc: &Arc) -> Self {
+        Self { around: Around::end_of(arc) }
+    }
+
+    #[cfg(feature = "methods")]
+    /// Goes on from where another method is.
+    pub(crate) const fn from_around(around: Around) -> Self {
+        Self { around }
+    }
+
+    #[cfg(feature = "methods")]
+    /// Takes a step back that led here, right after turning round.
+    pub(crate) const fn take_back(&mut self, step: Step) {
+        self.around.take_back(step);
+    }
+
     /// Quadrants entered since the start.
     pub const fn quadrants_entered(&self) -> u8 {
         self.around.entered()
@@ -141,6 +158,12 @@ impl ComparedLine {
             signs: (x.signum() as i8, z.signum() as i8),
             done: 0,
         }
+    }
+
+    /// At the end of `line`.
+    pub const fn end_of(line: Line) -> Self {
+        let start = Self::new(line);
+        Self { done: start.counts.0.wrapping_add(start.counts.1), ..start }
     }
 
     const fn x_step(&self) -> Step {

@@ -57,6 +57,12 @@ impl MultipliedLine {
         }
     }
 
+    /// At the end of `line`: the dividers are as at first.
+    pub fn end_of(line: Line) -> Self {
+        let start = Self::new(line);
+        Self { done: 1_u32.wrapping_shl(start.bits), ..start }
+    }
+
     /// Pulses of the multiplier for `number` in the 2^s counts that end with the `group`-th (from 1).
     fn passed(&self, number: u32, group: u32) -> u32 {
         let rest = self.bits.wrapping_sub(self.smoothing);
