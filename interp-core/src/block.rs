@@ -22,7 +22,8 @@ use crate::curve::line::Line;
 use crate::curve::method::Method;
 use crate::curve::prepare_arc::{Metric, Prepared, Reach};
 use crate::curve::proportion::Proportion;
-use crate::math::{RADIAN_Q30, Wide, root_wide, scale, to_i64, to_u32};
+use crate::drive::gearing::Lead;
+use crate::math::{RADIAN_Q30, Wide, root_wide, scale, to_i64, to_u32, to_u64};
 use crate::units::{Axis, Feedrate, Lattice, Length, Point, Sense};
 use heapless::Vec;
 
@@ -36,6 +37,35 @@ pub enum Pace {
     Rapid,
     /// Along the path, times the feed override.
     Feed(Feedrate),
+    /// Along the path for each turn of the spindle, times the feed override; without phase.
+    PerTurn(Lead),
+    /// A thread: the axis that goes farther by the lead a turn, from the index on.
+    Thread {
+        /// Pitch times starts.
+        lead: Lead,
+        /// Behind the index, in 2^-16 of a turn: the start of a multiple thread.
+        start: u16,
+    },
+}
+
+/// What sets the speed of a motion.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Feed {
+    /// The limits.
+    Rapid,
+    /// Time: path a tick.
+    PerTick(Speed),
+    /// The spindle's speed: path a turn.
+    PerTurn(Lead),
+    /// The spindle's angle: path a turn, and the start of the thread behind the index.
+    Thread(Lead, u16),
+}
+
+impl Feed {
+    /// Whether the path is bound to the spindle's angle.
+    pub const fn is_thread(self) -> bool {
+        matches!(self, Self::Thread(..))
+    }
 }
 
 /// A programmed curve, from where the last one ended.
@@ -88,8 +118,8 @@ pub struct Motion {
     pub curve: Curve,
     /// Length of the walked curve, nm with 12 fraction bits, never 0.
     pub length: u64,
-    /// Programmed feed; `None` is a rapid.
-    pub feed: Option<Speed>,
+    /// What sets its speed.
+    pub feed: Feed,
     /// Largest speed on this block, whatever the override.
     pub limit: Speed,
     /// Largest acceleration along the path, nm a tick squared with 12 fraction bits.
@@ -114,6 +144,7 @@ pub struct Block {
 }
 
 /// What a block does.
+#[expect(clippy::large_enum_variant, reason = "nearly all are motions, and there is no allocation")]
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Work {
     /// Moves.
@@ -188,6 +219,8 @@ pub struct Builder {
     lattice: Lattice,
     /// Direction in which the last motion ended; `None` after a standstill.
     heading: Option<Direction>,
+    /// The last motion was part of a thread.
+    in_thread: bool,
 }
 
 /// Thousandths of its acceleration that an arc's curvature may take: at most sqrt(0.998 a R), so that a sixteenth of the
@@ -198,7 +231,8 @@ impl Builder {
     /// A builder that stands at `at`.
     pub fn new(machine: &Machine, at: Point) -> Self {
         let lattice = Lattice { x: machine.x.pulse.nearest(at.x), z: machine.z.pulse.nearest(at.z) };
-        Self { machine: *machine, metric: Metric::new(machine.x.pulse, machine.z.pulse), at, lattice, heading: None }
+        let metric = Metric::new(machine.x.pulse, machine.z.pulse);
+        Self { machine: *machine, metric, at, lattice, heading: None, in_thread: false }
     }
 
     /// Where the last curve ended, as programmed.
@@ -288,7 +322,8 @@ impl Builder {
         let by_axis = self.speed_limit(heading);
         let accel = Self::least(self.machine.x.accel, self.machine.z.accel, heading).0;
         let steps = Proportion::new(u64::from(line.steps()) << 16, length, length);
-        let run = Run { length, entry: heading, exit: heading, by_axis, by_bend: Speed::MAX, accel };
+        let reach = to_u64(dx.abs().max(dz.abs())).max(1);
+        let run = Run { length, reach, entry: heading, exit: heading, by_axis, by_bend: Speed::MAX, accel };
         #[cfg(feature = "methods")]
         let curve = match self.machine.method {
             // a line is its own chord
@@ -337,7 +372,8 @@ impl Builder {
                 // v^2 = 0.998 a R; both sides with 24 fraction bits
                 let square = u128::from(accel).wrapping_mul(u128::from(arc.radius()));
                 let by_bend = to_u32(root_wide(square.wrapping_mul(CURVATURE_SHARE) / 1000));
-                let run = Run { length: arc.length().max(1), entry, exit, by_axis, by_bend, accel };
+                let length = arc.length().max(1);
+                let run = Run { length, reach: length, entry, exit, by_axis, by_bend, accel };
                 let curve = Curve::Arc(Arc { method: self.machine.method, ..arc });
                 self.finish(curve, &run, pace, built);
             }
@@ -361,19 +397,24 @@ impl Builder {
 
     fn finish(&mut self, curve: Curve, run: &Run, pace: Pace, built: &mut Built) {
         let (jump_x, jump_z) = (self.machine.x.jump, self.machine.z.jump);
+        let feed = match pace {
+            Pace::Rapid => Feed::Rapid,
+            Pace::Feed(feed) => Feed::PerTick(speed_of(feed)),
+            Pace::PerTurn(lead) => Feed::PerTurn(lead),
+            Pace::Thread { lead, start } => Feed::Thread(lead.stretched(run.length, run.reach), start),
+        };
         let joint = match self.heading {
+            // a thread begins and ends in standstill: its drive is another one
+            Some(_) if feed.is_thread() != self.in_thread => 0,
             Some(before) => {
                 let change = (run.entry.0.wrapping_sub(before.0), run.entry.1.wrapping_sub(before.1));
                 Self::least(jump_x, jump_z, change).0
             }
             None => Speed::MAX,
         };
-        let feed = match pace {
-            Pace::Rapid => None,
-            Pace::Feed(feed) => Some(speed_of(feed)),
-        };
+        self.in_thread = feed.is_thread();
         let (speed, axis) = run.by_axis;
-        if feed.is_some_and(|feed| feed > speed) && built.limited.is_none() {
+        if matches!(feed, Feed::PerTick(feed) if feed > speed) && built.limited.is_none() {
             built.limited = Some(Limited { axis, speed });
         }
         self.heading = Some(run.exit);
@@ -407,6 +448,8 @@ impl Builder {
 /// What a curve and the machine make of a motion.
 struct Run {
     length: u64,
+    /// What the axis that goes farther covers of it: a thread's lead is along that axis.
+    reach: u64,
     entry: Direction,
     exit: Direction,
     /// What no axis's maximum is passed at.

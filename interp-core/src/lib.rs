@@ -9,6 +9,7 @@ pub mod channel;
 pub mod compensation;
 pub mod config;
 pub mod curve;
+pub mod drive;
 pub mod governor;
 pub mod group;
 pub mod math;

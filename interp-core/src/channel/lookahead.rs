@@ -7,7 +7,7 @@
 //! Braking as hard as allowed from any planned state meets every joint; a change of the override therefore needs no
 //! more than a new pass, and a feed that is suddenly too high is approached gradually.
 
-use crate::block::{Block, Motion, Speed, Work};
+use crate::block::{Block, Feed, Motion, Speed, Work};
 use crate::governor::square;
 use heapless::Deque;
 
@@ -30,11 +30,15 @@ pub struct Lookahead<const N: usize> {
     blocks: Deque<Planned, N>,
 }
 
-/// Speed of a motion under an override.
+/// An override that stands for no feed at all but the limits: for drives that have a feed of their own.
+pub const AT_LIMIT: u16 = u16::MAX;
+
+/// Speed of a motion under an override; that of one that follows the spindle is not known, and planned with its limit.
 pub fn pace(motion: &Motion, feed_override: u16) -> Speed {
     match motion.feed {
-        None => motion.limit,
-        Some(feed) => {
+        Feed::Rapid | Feed::PerTurn(_) | Feed::Thread(..) => motion.limit,
+        Feed::PerTick(_) if feed_override == AT_LIMIT => motion.limit,
+        Feed::PerTick(feed) => {
             let scaled = u64::from(feed).wrapping_mul(u64::from(feed_override)) / 100;
             crate::math::to_u32(scaled).min(motion.limit)
         }

@@ -8,27 +8,34 @@
 mod classic;
 #[cfg(feature = "methods")]
 mod conic;
+mod crank;
 mod cruise;
 pub mod follower;
+mod geared;
 pub mod lookahead;
 mod runner;
 pub mod superposed;
+mod trail;
 mod walk;
+mod wheeled;
 
 use crate::block::{Block, Motion, Output, Speed, Work};
 use crate::compensation::Compensation;
 use crate::compensation::pitch::PitchTable;
 use crate::config::{Machine, TICK_CLOCKS};
+use crate::drive::Driven;
 use crate::governor::Advance;
 use crate::math::root;
 use crate::shaper::Shaper;
 use crate::times::Stretch;
 use crate::train::Train;
 use crate::units::{Axis, Lattice};
+use crank::Crank;
 use cruise::Cruise;
 use lookahead::{Lookahead, pace};
 use runner::{Runner, Sink};
 use superposed::Superposed;
+use trail::Trail;
 
 /// Blocks taken in one tick while a cycle fills the look-ahead.
 const FILL_PER_TICK: usize = 16;
@@ -70,11 +77,14 @@ pub struct Report {
     pub line: u32,
     /// Speed along the path at the tick's end.
     pub speed: Speed,
+    /// What a drive other than time did.
+    pub driven: Driven,
 }
 
 impl Report {
     /// Of a channel that does nothing.
-    pub const IDLE: Self = Self { state: State::Idle, in_cycle: false, output: None, line: 0, speed: 0 };
+    pub const IDLE: Self =
+        Self { state: State::Idle, in_cycle: false, output: None, line: 0, speed: 0, driven: Driven::NONE };
 }
 
 /// A motion being executed.
@@ -148,7 +158,10 @@ pub struct Channel<const N: usize> {
     superposed: Superposed,
     current: Current,
     compensation: Compensation,
+    /// What drives other than time keep.
+    crank: Crank,
     ahead: Lookahead<N>,
+    trail: Trail,
 }
 
 impl<const N: usize> Channel<N> {
@@ -170,6 +183,8 @@ impl<const N: usize> Channel<N> {
             rest: machine.x.jump.min(machine.z.jump),
             starved: 0,
             waited: 0,
+            crank: Crank::new(),
+            trail: Trail::new(),
         }
     }
 
@@ -316,7 +331,8 @@ impl<const N: usize> Channel<N> {
         if matches!(self.state, State::Resetting) && self.speed == 0 && self.settled() {
             self.forget();
         }
-        Report { state: self.state, in_cycle, output, line: self.line, speed: self.speed }
+        let driven = self.crank.driven;
+        Report { state: self.state, in_cycle, output, line: self.line, speed: self.speed, driven }
     }
 
     /// Takes blocks and plans.
@@ -341,11 +357,14 @@ impl<const N: usize> Channel<N> {
             Current::Motion(active) => Some(&active.motion),
             Current::Nothing | Current::Dwell(_) => None,
         };
-        self.ahead.plan(active, self.feed_override);
+        self.ahead.plan(active, self.crank.planned_override(self.feed_override));
     }
 
     /// Executes for one tick.
     fn run(&mut self, out: &mut impl Train) -> Option<Output> {
+        if self.crank.turns {
+            return self.turn_crank(out);
+        }
         let mut clock = 0_u32;
         while clock < TICK_CLOCKS && matches!(self.state, State::Running | State::Holding | State::Resetting) {
             let left = TICK_CLOCKS.wrapping_sub(clock);
@@ -364,6 +383,7 @@ impl<const N: usize> Channel<N> {
                     }
                 }
                 Current::Nothing => match self.next_block() {
+                    Next::Goes if self.crank.turns => break,
                     Next::Goes => {}
                     Next::Stands => break,
                     Next::Output(output) => return Some(output),
@@ -386,6 +406,10 @@ impl<const N: usize> Channel<N> {
         if !matches!(self.state, State::Running) && self.speed == 0 {
             return Next::Stands;
         }
+        if self.trail.go_on() {
+            self.enter_again();
+            return Next::Goes;
+        }
         // the tool is where it should be before the program stands; and only a cycle moves what is added
         let moves = self.ahead.next().is_some_and(|(block, _)| lookahead::as_motion(block).is_some());
         if !moves && !self.settled() {
@@ -406,11 +430,16 @@ impl<const N: usize> Channel<N> {
                     self.speed.min(motion.joint).min(motion.limit)
                 };
                 self.current = Current::Motion(Active::new(motion, self.feed_override));
+                self.trail.push(block.line, motion);
+                self.ahead.skip();
+                self.begun();
+                return Next::Goes;
             }
             Work::Dwell(ticks) => {
                 self.current = Current::Dwell(u64::from(ticks).wrapping_mul(u64::from(TICK_CLOCKS)));
             }
             Work::Output(output) => {
+                self.trail.clear();
                 self.ahead.skip();
                 return Next::Output(output);
             }
@@ -422,6 +451,7 @@ impl<const N: usize> Channel<N> {
                 self.line = 0;
             }
         }
+        self.trail.clear();
         self.ahead.skip();
         Next::Goes
     }
@@ -429,6 +459,8 @@ impl<const N: usize> Channel<N> {
     /// Forgets all blocks after a reset.
     fn forget(&mut self) {
         self.ahead.clear();
+        self.trail.clear();
+        self.crank.stand();
         self.current = Current::Nothing;
         self.complete = false;
         self.line = 0;
@@ -440,7 +472,7 @@ impl<const N: usize> Channel<N> {
         let holding = !matches!(self.state, State::Running);
         let Current::Motion(active) = &mut self.current else { return None };
         if active.paced_at != self.feed_override {
-            (active.pace, active.paced_at) = (pace(&active.motion, self.feed_override), self.feed_override);
+            active.repace(self.feed_override, &self.crank);
         }
         let target = if holding { 0 } else { active.pace };
         if self.speed == 0 {
@@ -458,7 +490,7 @@ impl<const N: usize> Channel<N> {
         let advance = if steady && active.cruise.holds(target, left) {
             Advance { length: u64::from(target), clocks: TICK_CLOCKS, speed: target, done: false }
         } else {
-            let exit = self.ahead.exit(&active.motion);
+            let exit = self.trail.exit(&self.ahead, &active.motion);
             let budget = TICK_CLOCKS.wrapping_sub(clock);
             let advance = active.motion.advance(self.speed, left, exit, target, budget);
             if steady && advance.speed == target && !advance.done {
@@ -474,7 +506,7 @@ impl<const N: usize> Channel<N> {
         active.runner.advance(active.done, stretch, &mut sink);
         if advance.done {
             active.runner.finish(clock.wrapping_add(advance.clocks), &mut sink);
-            let goes_on = self.ahead.continues();
+            let goes_on = self.trail.is_behind() || self.ahead.continues();
             self.current = Current::Nothing;
             if !goes_on {
                 self.speed = 0;

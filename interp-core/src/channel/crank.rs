@@ -1,0 +1,217 @@
+//! Drives other than time: which one turns the crank, their inputs, and what they keep from tick to tick.
+
+use super::lookahead::{AT_LIMIT, pace};
+use super::{Active, Channel, Current, State};
+use crate::block::{Feed, Output, Speed, Work};
+use crate::config::TICK_CLOCKS;
+use crate::curve::proportion::Proportion;
+use crate::drive::follower::Follower;
+use crate::drive::gearing::{Gearing, Lead};
+use crate::drive::spindle::{COUNT, Spindle};
+use crate::drive::wheel::Wheel;
+use crate::drive::{Drive, DriveRefusal, Driven, Inputs};
+use crate::math::to_u32;
+use crate::train::Train;
+
+/// What drives other than time keep.
+#[derive(Clone, Debug)]
+pub(super) struct Crank {
+    /// The path is driven by something else than time, now.
+    pub(super) turns: bool,
+    /// The present motion is part of a thread.
+    pub(super) in_thread: bool,
+    /// The path goes back.
+    pub(super) back: bool,
+    pub(super) drive: Drive,
+    pub(super) driven: Driven,
+    pub(super) counts: i16,
+    pub(super) wheel: Wheel,
+    pub(super) spindle: Option<Spindle>,
+    /// From the spindle's angle to path, while it drives.
+    pub(super) gearing: Option<Gearing>,
+    /// Path since it began to.
+    pub(super) tool: i64,
+    pub(super) follower: Follower,
+    /// From the spindle's rate to path a tick, for feed a turn.
+    feed: Option<Proportion>,
+}
+
+impl Crank {
+    pub(super) const fn new() -> Self {
+        Self {
+            turns: false,
+            in_thread: false,
+            back: false,
+            drive: Drive::Time,
+            driven: Driven { dropped: 0, locked: false, trouble: None },
+            counts: 0,
+            wheel: Wheel::new(),
+            spindle: None,
+            gearing: None,
+            tool: 0,
+            follower: Follower::new(),
+            feed: None,
+        }
+    }
+
+    /// Percent of the feed that the look-ahead plans with.
+    pub(super) const fn planned_override(&self, feed_override: u16) -> u16 {
+        match self.drive {
+            Drive::Time => feed_override,
+            Drive::Spindle(_) | Drive::Wheel(_) => AT_LIMIT,
+        }
+    }
+
+    /// Forgets all motion.
+    pub(super) const fn stand(&mut self) {
+        self.in_thread = false;
+        self.turns = !matches!(self.drive, Drive::Time);
+        self.wheel = Wheel::new();
+        self.ungear();
+    }
+
+    /// Lets go of the spindle.
+    pub(super) const fn ungear(&mut self) {
+        self.gearing = None;
+        self.follower = Follower::new();
+        self.driven.locked = false;
+    }
+
+    /// Path a tick that the spindle makes of a lead, either sense; 0 without a spindle.
+    fn per_turn(&self) -> Speed {
+        match (self.spindle, self.feed) {
+            (Some(spindle), Some(feed)) => to_u32(feed.of(spindle.foretold().rate.unsigned_abs())),
+            _ => 0,
+        }
+    }
+
+    /// Prepares the ratio of a feed a turn.
+    fn prepare(&mut self, lead: Lead) {
+        self.feed = self.spindle.map(|spindle| {
+            let turn = u64::from(spindle.turn()).wrapping_mul(COUNT.unsigned_abs());
+            Proportion::new(u64::from(lead.nm()) << 12, turn, turn)
+        });
+    }
+}
+
+impl Active {
+    /// Finds the pace anew, under another override or spindle speed.
+    #[cold]
+    pub(super) fn repace(&mut self, feed_override: u16, crank: &Crank) {
+        if matches!(self.motion.feed, Feed::PerTurn(_)) {
+            // the override that it is paced at stays none, so it is found anew in every tick
+            let scaled = u64::from(crank.per_turn()).wrapping_mul(u64::from(feed_override)) / 100;
+            self.pace = to_u32(scaled).min(self.motion.limit);
+        } else {
+            (self.pace, self.paced_at) = (pace(&self.motion, feed_override), feed_override);
+        }
+    }
+}
+
+impl<const N: usize> Channel<N> {
+    /// Sets counts a turn of the spindle's encoder, 4 a line; `None` for no encoder. False, and nothing changes, while a
+    /// cycle runs or where the number is out of [`Spindle::COUNTS`].
+    pub fn set_encoder(&mut self, counts: Option<u32>) -> bool {
+        let spindle = counts.and_then(Spindle::new);
+        let fits = matches!(self.state, State::Idle | State::Ended) && counts.is_some() == spindle.is_some();
+        if fits {
+            self.crank.spindle = spindle;
+        }
+        fits
+    }
+
+    /// The spindle as it is tracked.
+    pub const fn spindle(&self) -> Option<&Spindle> {
+        self.crank.spindle.as_ref()
+    }
+
+    /// The drive.
+    pub const fn drive(&self) -> Drive {
+        self.crank.drive
+    }
+
+    /// Switches the drive. A thread is driven by the spindle, whatever the drive.
+    ///
+    /// # Errors
+    /// Unless the path stands: nothing changes then.
+    pub fn set_drive(&mut self, drive: Drive) -> Result<(), DriveRefusal> {
+        if self.speed != 0 {
+            return Err(DriveRefusal::Moving);
+        }
+        if self.crank.in_thread {
+            return Err(DriveRefusal::InThread);
+        }
+        if matches!(drive, Drive::Spindle(_)) && self.crank.spindle.is_none() {
+            return Err(DriveRefusal::NoEncoder);
+        }
+        self.crank.drive = drive;
+        self.crank.stand();
+        self.crank.driven = Driven::default();
+        Ok(())
+    }
+
+    /// Takes the readings of the tick's start, before [`tick`](Self::tick). Counts of the wheel add up until then.
+    pub fn read(&mut self, inputs: &Inputs) {
+        self.crank.counts = self.crank.counts.saturating_add(inputs.wheel);
+        if let (Some(spindle), Some(reading)) = (&mut self.crank.spindle, inputs.spindle) {
+            spindle.observe(reading);
+        }
+    }
+
+    /// A motion has begun.
+    pub(super) fn begun(&mut self) {
+        let Current::Motion(active) = &mut self.current else { return };
+        self.crank.in_thread = match active.motion.feed {
+            Feed::Rapid | Feed::PerTick(_) => false,
+            Feed::Thread(..) => true,
+            Feed::PerTurn(lead) => {
+                self.crank.prepare(lead);
+                active.paced_at = AT_LIMIT;
+                false
+            }
+        };
+        self.crank.turns = self.crank.in_thread || !matches!(self.crank.drive, Drive::Time);
+        if self.crank.in_thread {
+            // it waits for its phase
+            self.speed = 0;
+        }
+    }
+
+    /// A tick of a drive other than time.
+    #[inline(never)]
+    pub(super) fn turn_crank(&mut self, out: &mut impl Train) -> Option<Output> {
+        self.crank.driven = Driven { locked: self.crank.driven.locked, ..Driven::default() };
+        let counts = core::mem::take(&mut self.crank.counts);
+        if let Current::Dwell(clocks) = &mut self.current {
+            if matches!(self.state, State::Running) {
+                *clocks = clocks.saturating_sub(u64::from(TICK_CLOCKS));
+                if *clocks == 0 {
+                    self.current = Current::Nothing;
+                }
+            }
+            self.crank.driven.dropped = i32::from(counts);
+            return None;
+        }
+        if let (Drive::Wheel(click), false) = (self.crank.drive, self.crank.in_thread) {
+            return self.turn_wheel(click, counts, out);
+        }
+        self.crank.driven.dropped = i32::from(counts);
+        if matches!(self.current, Current::Nothing) && !self.begin_geared() {
+            return self.other_work();
+        }
+        self.turn_spindle(out);
+        None
+    }
+
+    /// Does what stands next in the program and is no motion.
+    pub(super) fn other_work(&mut self) -> Option<Output> {
+        let other = self.ahead.next().is_some_and(|(block, _)| !matches!(block.work, Work::Motion(_)));
+        if other && matches!(self.state, State::Running) {
+            self.crank.ungear();
+            if let super::Next::Output(output) = self.next_block() {
+                return Some(output);
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,143 @@
+//! The contour wheel drives the path: the feed governor with an end that the wheel moves.
+//!
+//! The wheel asks for a distance along the path, to either side. That is an end like any other: the governor runs toward
+//! it within the limits, brakes so that it stands there exactly, shares the acceleration with the bends, and is bound by
+//! the joints on the way, going back as well as forward. Where the wheel turns round, or asks for less than braking needs,
+//! the path brakes to a stand first and then goes the other way. Where the path ends, what is left is dropped and told.
+//!
+//! It sets off with the speed of one tick's acceleration, not with the jump that motors allow: a wheel is turned gently.
+
+use super::{Channel, Current, State};
+use crate::block::{Motion, Output};
+use crate::config::TICK_CLOCKS;
+use crate::drive::wheel::Click;
+use crate::governor::square;
+use crate::math::root;
+use crate::times::Stretch;
+use crate::train::Train;
+
+impl<const N: usize> Channel<N> {
+    /// A tick of the wheel.
+    pub(super) fn turn_wheel(&mut self, click: Click, counts: i16, out: &mut impl Train) -> Option<Output> {
+        let travel = i64::from(self.speed);
+        let signed = |length: i64, back: bool| if back { length.wrapping_neg() } else { length };
+        let braking = match &self.current {
+            Current::Motion(active) => square(self.speed).checked_div(u64::from(active.motion.accel) << 1).unwrap_or(0),
+            Current::Nothing | Current::Dwell(_) => 0,
+        };
+        let back = self.crank.back;
+        self.crank.driven.dropped = if matches!(self.state, State::Running) {
+            self.crank.wheel.turn(click, counts, signed(braking.cast_signed(), back), travel)
+        } else {
+            // a hold brakes, whatever the wheel asks for
+            self.crank.wheel.stop(click).saturating_add(i32::from(counts))
+        };
+        let mut clock = 0_u32;
+        while clock < TICK_CLOCKS {
+            if self.speed == 0 && !self.set_off(click) {
+                let forward = self.crank.wheel.to_go() > 0 && clock == 0 && !self.crank.back;
+                return if forward { self.end_of_path(click) } else { None };
+            }
+            match self.wheel_on(clock, out) {
+                Some(used) => clock = clock.wrapping_add(used),
+                None => break,
+            }
+        }
+        None
+    }
+
+    /// Begins to move where the wheel asks for it and the path leads there.
+    fn set_off(&mut self, click: Click) -> bool {
+        let to_go = self.crank.wheel.to_go();
+        if to_go == 0 || !matches!(self.state, State::Running) {
+            return false;
+        }
+        self.crank.back = to_go < 0;
+        if !self.enter(self.crank.back) {
+            if self.crank.back {
+                self.drop_rest(click);
+            }
+            return false;
+        }
+        let Current::Motion(active) = &self.current else { return false };
+        let motion = &active.motion;
+        let most = root(motion.reachable(to_go.unsigned_abs(), 0));
+        self.speed = motion.accel.min(motion.limit).min(most).max(1);
+        true
+    }
+
+    /// Pushed on where no motion follows: other work is done, else what is left is dropped.
+    fn end_of_path(&mut self, click: Click) -> Option<Output> {
+        let output = self.other_work();
+        if output.is_none() && matches!(self.current, Current::Nothing) {
+            self.drop_rest(click);
+        }
+        output
+    }
+
+    fn drop_rest(&mut self, click: Click) {
+        let dropped = self.crank.wheel.stop(click);
+        self.crank.driven.dropped = self.crank.driven.dropped.saturating_add(dropped);
+    }
+
+    /// The motion that follows in a sense.
+    fn neighbour(&self, back: bool) -> Option<&Motion> {
+        if back {
+            return self.trail.previous();
+        }
+        self.trail.next().or_else(|| self.ahead.next().and_then(|(block, _)| super::lookahead::as_motion(block)))
+    }
+
+    /// Moves inside the present motion from `clock` on; the clocks used, or `None` where it stands for the rest of the tick.
+    fn wheel_on(&mut self, clock: u32, out: &mut impl Train) -> Option<u32> {
+        let back = self.crank.back;
+        let room = self.room(back);
+        let Current::Motion(active) = &self.current else { return None };
+        let motion = &active.motion;
+        let mut exit = if back { self.trail.exit_back() } else { self.trail.exit(&self.ahead, motion) };
+        let to_go = self.crank.wheel.to_go();
+        let asked = u64::try_from(if back { to_go.wrapping_neg() } else { to_go }).unwrap_or(0);
+        let mut left = room;
+        if asked <= room {
+            (left, exit) = (asked, 0);
+        } else if let Some(next) = self.neighbour(back) {
+            exit = exit.min(next.reachable(asked.wrapping_sub(room), 0));
+        }
+        let stops = asked > 0 && motion.reachable(left, exit) >= square(self.speed);
+        let target = if stops { motion.limit } else { 0 };
+        if !stops {
+            left = room;
+            exit = if back { self.trail.exit_back() } else { self.trail.exit(&self.ahead, motion) };
+            if self.speed <= motion.accel {
+                self.speed = 0;
+                return None;
+            }
+        }
+        let budget = TICK_CLOCKS.wrapping_sub(clock);
+        let advance = motion.advance(self.speed, left, exit, target, budget);
+        self.speed = advance.speed;
+        let by = advance.length.min(room);
+        let signed = if back { by.cast_signed().wrapping_neg() } else { by.cast_signed() };
+        self.crank.wheel.went(signed);
+        self.pass(back, by, Stretch { from: clock, clocks: advance.clocks }, out);
+        if advance.done {
+            self.over_joint(back);
+        }
+        Some(advance.clocks)
+    }
+
+    /// Where a stretch is over: at the wheel's end it stands, at a joint it goes on at the joint's speed at most.
+    fn over_joint(&mut self, back: bool) {
+        let joint = match &self.current {
+            Current::Motion(active) => active.motion.joint,
+            Current::Nothing | Current::Dwell(_) => crate::block::Speed::MAX,
+        };
+        if self.crank.wheel.to_go() == 0 || self.room(back) > 0 || !self.enter(back) {
+            self.speed = 0;
+            return;
+        }
+        let Current::Motion(active) = &self.current else { return };
+        let joint = if back { joint } else { active.motion.joint };
+        self.speed = self.speed.min(joint).min(active.motion.limit);
+    }
+}

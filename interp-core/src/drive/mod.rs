@@ -1,0 +1,95 @@
+//! Drives: what turns the crank. Time is the channel's own; spindle and contour wheel are here.
+//!
+//! A drive gives the advance along the path for a tick, and knows nothing of curves: any drive runs any curve. Inputs
+//! come as values ([`Inputs`]), one set a tick, so a tick stays a function of state, commands and readings.
+
+pub mod follower;
+pub mod gearing;
+pub mod spindle;
+pub mod wheel;
+
+use crate::block::Speed;
+use gearing::Lead;
+use wheel::Click;
+
+/// What turns the crank.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum Drive {
+    /// The feed governor.
+    #[default]
+    Time,
+    /// The spindle: so much path a turn, forward and back, on every motion. Without phase; threads have their own lead.
+    Spindle(Lead),
+    /// The contour wheel.
+    Wheel(Click),
+}
+
+/// What was read at the start of a tick.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Inputs {
+    /// The spindle's encoder, where there is one.
+    pub spindle: Option<spindle::Reading>,
+    /// Counts of the contour wheel since the last tick, 4 a detent.
+    pub wheel: i16,
+}
+
+/// What a drive could not do in a tick. It is told in every tick that it lasts.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Trouble {
+    /// Lead times spindle speed is more than the motion allows. The phase is lost until it is less.
+    TooFast {
+        /// Speed along the path that the spindle asks for.
+        needed: Speed,
+        /// What the motion allows.
+        limit: Speed,
+    },
+    /// The spindle's speed changes faster than the axes can follow. The phase is lost until they have caught up.
+    TooHard {
+        /// Acceleration along the path that the spindle asks for, nm a tick squared with 12 fraction bits.
+        needed: u32,
+        /// What the motion allows.
+        limit: u32,
+    },
+    /// The index came so many counts from where it should: counts or an index pulse got lost, or there is noise.
+    Index {
+        /// Counts, positive for too many.
+        off: i32,
+    },
+}
+
+/// What the drive did in a tick.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Driven {
+    /// Counts of the wheel that were dropped.
+    pub dropped: i32,
+    /// The path keeps the spindle's phase.
+    pub locked: bool,
+    /// What could not be done.
+    pub trouble: Option<Trouble>,
+}
+
+impl Driven {
+    /// Nothing.
+    pub const NONE: Self = Self { dropped: 0, locked: false, trouble: None };
+}
+
+/// Why the drive was not switched.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum DriveRefusal {
+    /// The path is not at a standstill.
+    Moving,
+    /// A thread is being cut: its drive is the spindle until its end.
+    InThread,
+    /// There is no spindle encoder.
+    NoEncoder,
+}
+
+impl core::fmt::Display for DriveRefusal {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Moving => "the drive is switched at standstill only: hold first",
+            Self::InThread => "a thread keeps the spindle as its drive: let it end, or reset",
+            Self::NoEncoder => "there is no spindle encoder: set its counts a turn",
+        })
+    }
+}
