@@ -187,7 +187,7 @@ impl<C: Sampled> Chain<C> {
         let accel = builder.machine.x.accel.min(builder.machine.z.accel);
         let by_bend = bend_limit(accel, length, stretch.turn);
         let along = accel_beside(accel, by_axis.0.min(by_bend), length, stretch.turn);
-        let run = Run { length, entry, exit, by_axis, by_bend, accel: along };
+        let run = Run { length, reach: length, entry, exit, by_axis, by_bend, accel: along };
         builder.chained(Curve::Line(line, proportion(line, length)), &run, self.pace, &mut self.limited)
     }
 }

@@ -202,8 +202,15 @@ impl Pieces {
         let accel = builder.machine.x.accel.min(builder.machine.z.accel);
         // v^2 = 0.998 a R
         let square = u128::from(accel).saturating_mul(u128::from(radius)).saturating_mul(super::CURVATURE_SHARE) / 1000;
-        let run =
-            Run { length, entry: draft.entry, exit: draft.exit, by_axis, by_bend: to_u32(root_wide(square)), accel };
+        let run = Run {
+            length,
+            reach: length,
+            entry: draft.entry,
+            exit: draft.exit,
+            by_axis,
+            by_bend: to_u32(root_wide(square)),
+            accel,
+        };
         builder.chained(Curve::Conic(piece), &run, self.pace, &mut self.limited)
     }
 

@@ -79,13 +79,19 @@ impl Arc {
 
     /// A walker at the end.
     pub fn walk_from_end(&self) -> ArcWalker {
-        let mut walker = self.walk();
+        self.walk_back_to((0, 0))
+    }
+
+    /// A walker at the end of a curve that begins at a lattice point.
+    pub(crate) fn walk_back_to(&self, from: (i32, i32)) -> ArcWalker {
+        let mut walker = self.walk_from(from);
+        let end = (from.0.wrapping_add(self.end.0), from.1.wrapping_add(self.end.1));
         while walker.piece.wrapping_add(1) < self.pieces {
             walker.piece = walker.piece.wrapping_add(1);
             walker.octant = Self::octant_after(walker.octant, self.sense);
         }
-        (walker.x, walker.z) = self.end;
-        walker.stand_at_end_of_octant(self.end);
+        (walker.x, walker.z) = end;
+        walker.stand_at_end_of_octant(end);
         walker
     }
 

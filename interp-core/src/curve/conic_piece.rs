@@ -47,6 +47,15 @@ impl ConicPiece {
 
     /// A walker at the part's start.
     pub fn walk(&self) -> ArcWalker {
+        self.arc().walk_from(self.from)
+    }
+
+    /// A walker at the part's end.
+    pub fn walk_from_end(&self) -> ArcWalker {
+        self.arc().walk_back_to(self.from)
+    }
+
+    fn arc(&self) -> Arc {
         let [a, b, c, d] = self.conic;
         let (mut steps, mut joints) = ([0; MAX_PIECES], [(0, 0); MAX_PIECES - 1]);
         // a joint leads from an octant to the next, here from one without steps
@@ -61,7 +70,7 @@ impl ConicPiece {
         };
         let timeline = Timeline { centre: self.centre, ..Timeline::default() };
         let (sense, method, end) = (self.sense, Method::MinimumDeviation, self.end);
-        Arc { a, b, c, d, steps, joints, octant, pieces, sense, method, timeline, end }.walk_from(self.from)
+        Arc { a, b, c, d, steps, joints, octant, pieces, sense, method, timeline, end }
     }
 
     /// The major coordinate `length` along the part.

@@ -9,6 +9,8 @@ use super::{ArcRunner, LineRunner, Runner, Sink, lines_back, share};
 use crate::block::Curve;
 #[cfg(feature = "methods")]
 use crate::channel::classic::ClassicRunner;
+#[cfg(feature = "methods")]
+use crate::channel::conic::ConicRunner;
 use crate::curve::Walker;
 use crate::curve::arc::Arc;
 #[cfg(feature = "methods")]
@@ -41,6 +43,8 @@ impl Runner {
             Curve::ClassicLine(line, pulses, method) => {
                 Self::Classic(ClassicRunner::at_end_of_line(*line, *pulses, length, *method))
             }
+            #[cfg(feature = "methods")]
+            Curve::Conic(piece) => Self::Conic(ConicRunner::at_end(piece, length)),
         }
     }
 
@@ -51,6 +55,8 @@ impl Runner {
             Self::Arc(runner) => runner.retreat(length, stretch, sink),
             #[cfg(feature = "methods")]
             Self::Classic(runner) => runner.retreat(length, stretch, sink),
+            #[cfg(feature = "methods")]
+            Self::Conic(runner) => runner.retreat(length, stretch, sink),
         }
     }
 }
