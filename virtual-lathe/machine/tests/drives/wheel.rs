@@ -103,11 +103,11 @@ fn direct(machine: &Machine, um: u32, counts: i64) -> Lattice {
     while left > 0 {
         let asked = left.min(4) as i16;
         left -= i64::from(asked) - i64::from(bench.wheel(asked).driven.dropped);
-        for _ in 0..6 {
+        // at the end until it rests: what is dropped there is asked for again
+        for _ in 0..if left > 0 { 6 } else { 400 } {
             left += i64::from(bench.wheel(0).driven.dropped);
         }
     }
-    bench.rest(400);
     bench.at
 }
 
