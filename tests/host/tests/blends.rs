@@ -12,7 +12,7 @@
 use feature_editor::codes::{Action, Feed, Format, Item};
 use handcnc::background::compile::Compiler;
 use host_tests::{parameters, run};
-use interp_core::block::{Block, Motion, Work};
+use interp_core::block::{Block, Feed as Pace, Motion, Work};
 use interp_core::channel::lookahead::pace;
 use interp_core::units::{Point, Sense};
 use proptest::prelude::*;
@@ -255,7 +255,7 @@ fn without_a_tolerance_the_corner_is_left_as_far_as_the_feed_needs() {
     assert!((radius - 400.0 / 499.0).abs() < 1e-4, "{radius}");
     let blocks = blocks(text, set);
     let motions = joints(&blocks);
-    let feed = motions[0].0.feed.unwrap();
+    let Pace::PerTick(feed) = motions[0].0.feed else { panic!("a feed") };
     assert!(
         motions.iter().all(|(before, behind)| before.limit.min(behind.limit).min(behind.joint) >= feed - feed / 1000)
     );
