@@ -50,8 +50,9 @@ impl Follower {
 
     /// Moves for a tick towards `target`; the whole pulses that it moved by.
     ///
-    /// The speed is at most the one from which it can stop on the target: `v + (v - a) + (v - 2 a) + .. = v (v + a) /
-    /// 2 a` is at most the distance, so `v = (sqrt(a^2 + 8 a distance) - a) / 2`.
+    /// The speed is at most one from which it can stop on the target. Slowing down by `a` each tick, the way from `v` on,
+    /// `v + (v - a) + (v - 2 a) + ..`, is at most `(v + a / 2)^2 / 2 a`; so `v = sqrt(2 a distance) - a / 2`. From such a speed
+    /// the next, slower by `a`, is such a one again.
     pub fn follow(&mut self, target: i64, pace: &Pace) -> i32 {
         let distance = target.wrapping_sub(self.place);
         if distance == 0 && self.speed == 0 {
@@ -62,9 +63,8 @@ impl Follower {
         let most = if away <= accel.unsigned_abs() {
             away
         } else {
-            let squared = accel.unsigned_abs().saturating_mul(accel.unsigned_abs());
-            let reach = squared.saturating_add(away.saturating_mul(8).saturating_mul(accel.unsigned_abs()));
-            u64::from(root(reach)).saturating_sub(accel.unsigned_abs()) / 2
+            let squared = away.saturating_mul(8).saturating_mul(accel.unsigned_abs());
+            u64::from(root(squared)).saturating_sub(accel.unsigned_abs()) / 2
         };
         let most = i64::try_from(most).unwrap_or(i64::MAX).min(pace.speed);
         let wanted = most.wrapping_mul(distance.signum());
