@@ -5,7 +5,8 @@
 
 use crate::compensation::Plan;
 use crate::curve::method::Method;
-use crate::math::to_u32;
+use crate::law::{MAX_TICKS, Smoothing, SpeedLaw};
+use crate::math::{root, to_u32};
 use crate::units::{Axis, Feedrate, PulseSize};
 
 /// Clocks of the pulse train in one tick.
@@ -63,6 +64,13 @@ pub enum ConfigError {
     },
     /// The pulse sizes differ by more than [`Config::MAX_PULSE_RATIO`].
     PulseRatio,
+    /// The jerk asked for needs a longer mean than there is room for.
+    Jerk {
+        /// The law asked for.
+        law: SpeedLaw,
+        /// The least jerk that can be kept, mm/s3.
+        least: u32,
+    },
     /// An acceleration or jump is outside its range.
     Range {
         /// Which axis.
@@ -104,6 +112,8 @@ pub struct Machine {
     pub method: Method,
     /// What the motors have to go beyond the program. [`Config::check`] leaves it empty; see [`Machine::compensated`].
     pub compensation: Plan,
+    /// How the speed along the path changes.
+    pub smoothing: Smoothing,
 }
 
 /// Speed in the interpolator's unit, rounded to nearest, at least 1.
@@ -180,7 +190,30 @@ impl Config {
         let event_min = clocks(self.event_min_ns).max(1);
         let x = self.x.check(Axis::X, event_min, self.z.pulse_width_ns)?;
         let z = self.z.check(Axis::Z, event_min, self.x.pulse_width_ns)?;
-        Ok(Machine { x, z, event_min, method: Method::MinimumDeviation, compensation: Plan::default() })
+        let (method, compensation, smoothing) = (Method::MinimumDeviation, Plan::default(), Smoothing::NONE);
+        Ok(Machine { x, z, event_min, method, compensation, smoothing })
+    }
+}
+
+impl Machine {
+    /// The same machine under a speed law with a jerk of at most `jerk` mm/s3 along the path.
+    ///
+    /// The S laws plan with 7/8 of the axes' accelerations: their mean over a joint of a line and an arc may need up to
+    /// 2 / sqrt(3) of what each allows by itself, and axes that jump at a joint spread that over the mean, too.
+    ///
+    /// # Errors
+    /// [`ConfigError::Jerk`].
+    pub fn with_law(self, law: SpeedLaw, jerk: u32) -> Result<Self, ConfigError> {
+        if matches!(law, SpeedLaw::Linear) {
+            return Ok(Self { smoothing: Smoothing::NONE, ..self });
+        }
+        let planned = |limits: AxisLimits| AxisLimits { accel: limits.accel.wrapping_sub(limits.accel >> 3), ..limits };
+        let (x, z) = (planned(self.x), planned(self.z));
+        // both axes at their limit; below 2^57, as an acceleration is below 2^28
+        let square = |limits: AxisLimits| u64::from(limits.accel).wrapping_mul(u64::from(limits.accel));
+        let accel = root(square(x).saturating_add(square(z))).saturating_add(1);
+        let smoothing = Smoothing::new(law, accel, jerk).map_err(|least| ConfigError::Jerk { law, least })?;
+        Ok(Self { x, z, smoothing, ..self })
     }
 }
 
@@ -197,6 +230,11 @@ impl core::fmt::Display for ConfigError {
             Self::PulseRatio => {
                 write!(f, "x.pulse_nm and z.pulse_nm differ by more than {} times", Config::MAX_PULSE_RATIO)
             }
+            Self::Jerk { law, least } => write!(
+                f,
+                "accel={} would need a mean of more than {MAX_TICKS} ms: max_jerk must be at least {least} mm/s3, or max_accel smaller",
+                law.name()
+            ),
             Self::Range { axis } => write!(f, "{0}.max_accel or {0}.max_jump is outside its range", axis.letter()),
         }
     }

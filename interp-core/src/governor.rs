@@ -153,6 +153,21 @@ impl Motion {
     /// `target`, so that the end can be met at the squared speed `exit`.
     #[inline(never)]
     pub fn advance(&self, speed: Speed, left: u64, exit: u64, target: Speed, clocks: u32) -> Advance {
+        self.advance_within(speed, left, exit, target, clocks, self.accel)
+    }
+
+    /// The same where the exit may be too low, after a change of the override: such a one is approached with what turning
+    /// leaves of the acceleration.
+    #[inline(never)]
+    pub fn advance_gently(&self, speed: Speed, left: u64, exit: u64, target: Speed, clocks: u32) -> Advance {
+        let met = self.reachable(left, exit);
+        let hardest = if square(speed) > met.saturating_add(met >> 4) { self.along(speed) } else { self.accel };
+        self.advance_within(speed, left, exit, target, clocks, hardest)
+    }
+
+    /// Brakes with at most `hardest`.
+    #[inline(always)]
+    fn advance_within(&self, speed: Speed, left: u64, exit: u64, target: Speed, clocks: u32, hardest: u32) -> Advance {
         // toward the target no harder than turning leaves room for; for the exit as hard as it takes, which the plan
         // keeps within that room except for what a tick rounds
         let wish = if speed == target {
@@ -161,7 +176,7 @@ impl Motion {
             let rise = part(self.along(speed), clocks).max(1);
             target.max(speed.saturating_sub(rise)).min(speed.saturating_add(rise))
         };
-        let slowest = speed.saturating_sub(part(self.accel, clocks).max(1));
+        let slowest = speed.saturating_sub(part(hardest, clocks).max(1));
         let ending = self.ending(speed, wish, left, exit, clocks);
         let end = wish.min(ending).max(slowest);
         let length = covered(speed, end, clocks);

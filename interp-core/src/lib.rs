@@ -12,6 +12,7 @@ pub mod curve;
 pub mod drive;
 pub mod governor;
 pub mod group;
+pub mod law;
 pub mod math;
 pub mod ramp;
 pub mod ring;

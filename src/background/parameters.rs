@@ -9,6 +9,7 @@ use feature_editor::codes::{Number, Settings};
 use interp_core::compensation::{self, Temperatures};
 use interp_core::config::{AxisConfig, Config, ConfigError, Machine};
 use interp_core::curve::method::Method;
+use interp_core::law::{Smoothing, SpeedLaw};
 use interp_core::units::{Axis, Feedrate, Length, Point, PulseSize};
 
 /// How a parameter is written and held.
@@ -59,6 +60,7 @@ const BACKLASH: Kind = number(1_000, 0, compensation::Config::MAX_BACKLASH_NM as
 const EXPANSION: Kind = number(1_000, 0, compensation::Config::MAX_THERMAL as i64);
 const POSITION: Kind = number(1_000_000, -(Length::LIMIT_NM as i64), Length::LIMIT_NM as i64);
 const TEMPERATURE: Kind = number(1_000, -50_000, 150_000);
+const JERK: Kind = number(1, Smoothing::JERK_RANGE.0 as i64, Smoothing::JERK_RANGE.1 as i64);
 const NANOSECONDS: Kind = number(1, 100, 200_000);
 
 const fn definition(
@@ -102,7 +104,9 @@ mod index {
     pub(super) const AXIS_COMPENSATION: usize = 5;
     pub(super) const THERMAL_REFERENCE: usize = 44;
     pub(super) const TEMPERATURE: usize = 45;
-    pub(super) const COUNT: usize = 46;
+    pub(super) const LAW: usize = 46;
+    pub(super) const MAX_JERK: usize = 47;
+    pub(super) const COUNT: usize = 48;
 }
 
 /// Methods that this build has, in the order of [`Method::ALL`].
@@ -111,6 +115,9 @@ const METHODS: &[&str] = if cfg!(feature = "methods") {
 } else {
     &["minimum-deviation"]
 };
+
+/// Speed laws in the order of [`SpeedLaw::ALL`].
+const LAWS: &[&str] = &[SpeedLaw::ALL[0].name(), SpeedLaw::ALL[1].name(), SpeedLaw::ALL[2].name()];
 
 /// All parameters.
 pub static DEFINITIONS: [Definition; index::COUNT] = [
@@ -160,6 +167,14 @@ pub static DEFINITIONS: [Definition; index::COUNT] = [
     definition("z.thermal_origin_mm", "mm", POSITION, "0", "place that stays where it is when the screw gets longer"),
     definition("thermal_reference_c", "C", TEMPERATURE, "20", "temperature at which the screws are right"),
     definition("temperature_c", "C", TEMPERATURE, "20", "temperature of the screws, as measured"),
+    definition(
+        "accel",
+        "",
+        Kind::Choice(LAWS),
+        "linear",
+        "how the speed changes: at once, or S-shaped with limited jerk",
+    ),
+    definition("max_jerk", "mm/s3", JERK, "50000", "largest jerk along the path under accel=sine and parabolic"),
 ];
 
 /// A value as held.
@@ -313,7 +328,8 @@ impl Parameters {
             reference: self.temperature(index::THERMAL_REFERENCE),
             screws: self.temperature(index::TEMPERATURE),
         };
-        Ok(Machine { method: self.method(), ..machine }.compensated(&x, &z, temperatures))
+        let machine = Machine { method: self.method(), ..machine }.compensated(&x, &z, temperatures);
+        machine.with_law(self.law(), self.small(index::MAX_JERK))
     }
 
     /// How steps follow a curve.
@@ -321,6 +337,14 @@ impl Parameters {
         match self.values.get(index::METHOD) {
             Some(Value::Choice(word)) => Method::ALL.get(*word).copied().unwrap_or_default(),
             _ => Method::default(),
+        }
+    }
+
+    /// How the speed changes.
+    pub fn law(&self) -> SpeedLaw {
+        match self.values.get(index::LAW) {
+            Some(Value::Choice(word)) => SpeedLaw::ALL.get(*word).copied().unwrap_or_default(),
+            _ => SpeedLaw::default(),
         }
     }
 
@@ -548,6 +572,8 @@ mod tests {
             (index::FRONT_POST, "front_post"),
             (index::BLOCK_DELETE, "block_delete"),
             (index::START, "start"),
+            (index::LAW, "accel"),
+            (index::MAX_JERK, "max_jerk"),
         ] {
             assert_eq!(DEFINITIONS[at].name, name);
         }
@@ -622,6 +648,28 @@ mod tests {
             let shown = parameters.iter().find(|(definition, _)| definition.name == "method");
             assert_eq!(shown.unwrap().1.to_string(), *name);
         }
+    }
+
+    #[test]
+    fn a_speed_law_takes_a_mean_that_its_jerk_allows() {
+        let mut parameters = Parameters::new();
+        let machine = parameters.machine().unwrap();
+        assert_eq!((machine.smoothing, machine.x.accel), (Smoothing::NONE, 500 << 12));
+        // 7/8 of 500 mm/s2 in both axes is 618.7 along the path; 2 a / j = 24.7 ms, pi a / j = 38.9 ms
+        for (law, ticks) in [("parabolic", 25), ("sine", 39)] {
+            parameters.set("accel", law).unwrap();
+            let machine = parameters.machine().unwrap();
+            assert_eq!((machine.smoothing.law(), machine.smoothing.ticks()), (parameters.law(), ticks));
+            assert_eq!(machine.x.accel, 437 << 12 | 2048);
+        }
+        parameters.set("max_jerk", "30000").unwrap();
+        let error = parameters.machine().unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "accel=sine would need a mean of more than 64 ms: max_jerk must be at least 30376 mm/s3, or max_accel smaller"
+        );
+        parameters.set("max_jerk", "30376").unwrap();
+        assert_eq!(parameters.machine().unwrap().smoothing.ticks(), 64);
     }
 
     #[test]

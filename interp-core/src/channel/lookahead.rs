@@ -7,6 +7,9 @@
 //! Braking as hard as allowed from any planned state meets every joint; a change of the override therefore needs no
 //! more than a new pass, and a feed that is suddenly too high is approached gradually.
 
+pub(super) mod smooth;
+
+use super::margins::Margins;
 use crate::block::{Block, Feed, Motion, Speed, Work};
 use crate::governor::square;
 use heapless::Deque;
@@ -17,6 +20,10 @@ struct Planned {
     block: Block,
     /// Squared speed at which it is to be entered.
     entry: u64,
+    /// Under an S law: margins before its start.
+    margins: Margins,
+    /// Under an S law: it is begun from standstill, whatever is before it.
+    stands: bool,
 }
 
 /// The blocks to come, at most `N`.
@@ -69,7 +76,7 @@ impl<const N: usize> Lookahead<N> {
     /// Adds a block; it is planned by the next [`plan`](Self::plan).
     pub fn push(&mut self, block: Block) {
         // the caller asked `has_room`; a full queue would show as a missing block, so it must not be full
-        if self.blocks.push_back(Planned { block, entry: 0 }).is_ok() {
+        if self.blocks.push_back(Planned { block, entry: 0, margins: Margins::EMPTY, stands: false }).is_ok() {
             self.fresh = self.fresh.wrapping_add(1);
         }
     }
@@ -94,7 +101,7 @@ impl<const N: usize> Lookahead<N> {
     /// The squared speed at which `motion`, the one being executed, has to end.
     pub fn exit(&self, motion: &Motion) -> u64 {
         match self.blocks.front() {
-            Some(Planned { block: Block { work: Work::Motion(_), .. }, entry }) => *entry,
+            Some(Planned { block: Block { work: Work::Motion(_), .. }, entry, .. }) => *entry,
             _ => square(motion.stop),
         }
     }
@@ -126,13 +133,7 @@ impl<const N: usize> Lookahead<N> {
                 exit = None;
                 continue;
             };
-            let own = pace(motion, feed_override);
-            let most = match &before {
-                Some(before) => motion.joint.min(own).min(pace(before, feed_override)),
-                None => motion.start.min(own),
-            };
-            let leave = exit.unwrap_or(square(motion.stop));
-            let entry = motion.reachable(motion.length, leave).min(square(most));
+            let entry = linear_entry(before.as_ref(), motion, exit.unwrap_or(square(motion.stop)), feed_override);
             if entry == planned.entry && here < known {
                 return;
             }
@@ -146,6 +147,16 @@ impl<const N: usize> Default for Lookahead<N> {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// Squared speed at which `motion`, behind `before`, may be entered under the linear law so that its exit can be met.
+fn linear_entry(before: Option<&Motion>, motion: &Motion, exit: u64, feed_override: u16) -> u64 {
+    let own = pace(motion, feed_override);
+    let most = match before {
+        Some(before) => motion.joint.min(own).min(pace(before, feed_override)),
+        None => motion.start.min(own),
+    };
+    motion.reachable(motion.length, exit).min(square(most))
 }
 
 /// The motion of a block that moves.

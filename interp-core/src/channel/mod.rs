@@ -12,18 +12,21 @@ mod crank;
 mod cruise;
 pub mod follower;
 mod geared;
+mod lead;
 pub mod lookahead;
+mod margins;
 mod runner;
 pub mod superposed;
 mod trail;
 mod walk;
 mod wheeled;
+mod window;
 
 use crate::block::{Block, Motion, Output, Speed, Work};
 use crate::compensation::Compensation;
 use crate::compensation::pitch::PitchTable;
 use crate::config::{Machine, TICK_CLOCKS};
-use crate::drive::Driven;
+use crate::drive::{Drive, Driven};
 use crate::governor::Advance;
 use crate::math::root;
 use crate::shaper::Shaper;
@@ -32,10 +35,13 @@ use crate::train::Train;
 use crate::units::{Axis, Lattice};
 use crank::Crank;
 use cruise::Cruise;
+use lead::Lead;
+use lookahead::smooth::is_smoothed;
 use lookahead::{Lookahead, pace};
 use runner::{Runner, Sink};
 use superposed::Superposed;
 use trail::Trail;
+use window::Window;
 
 /// Blocks taken in one tick while a cycle fills the look-ahead.
 const FILL_PER_TICK: usize = 16;
@@ -160,6 +166,8 @@ pub struct Channel<const N: usize> {
     compensation: Compensation,
     /// What drives other than time keep.
     crank: Crank,
+    lead: Lead,
+    window: Window,
     ahead: Lookahead<N>,
     trail: Trail,
 }
@@ -185,6 +193,8 @@ impl<const N: usize> Channel<N> {
             waited: 0,
             crank: Crank::new(),
             trail: Trail::new(),
+            lead: Lead::new(),
+            window: Window::new(machine.smoothing),
         }
     }
 
@@ -247,6 +257,8 @@ impl<const N: usize> Channel<N> {
             self.shaper.configure(machine);
             self.compensation.configure(&machine.compensation, self.position);
             self.rest = machine.x.jump.min(machine.z.jump);
+            self.window = Window::new(machine.smoothing);
+            self.lead = Lead::new();
         }
         idle
     }
@@ -349,7 +361,11 @@ impl<const N: usize> Channel<N> {
                 break;
             };
             self.complete = matches!(block.work, Work::End);
+            let late = self.window.ticks() > 0 && taken == 0 && self.is_late();
             self.ahead.push(block);
+            if late {
+                self.ahead.stand_last();
+            }
             taken = taken.wrapping_add(1);
         }
         self.waited = if taken > 0 { 0 } else { self.waited.saturating_add(1) };
@@ -357,13 +373,21 @@ impl<const N: usize> Channel<N> {
             Current::Motion(active) => Some(&active.motion),
             Current::Nothing | Current::Dwell(_) => None,
         };
-        self.ahead.plan(active, self.crank.planned_override(self.feed_override));
+        let planned = self.crank.planned_override(self.feed_override);
+        match (self.window.ticks(), self.crank.drive) {
+            (0, _) | (_, Drive::Spindle(_) | Drive::Wheel(_)) => self.ahead.plan(active, planned),
+            (ticks, Drive::Time) => self.ahead.plan_smooth(active, planned, ticks),
+        }
     }
 
     /// Executes for one tick.
     fn run(&mut self, out: &mut impl Train) -> Option<Output> {
         if self.crank.turns {
             return self.turn_crank(out);
+        }
+        if self.window.ticks() > 0 && self.follows() {
+            self.follow(out);
+            return None;
         }
         let mut clock = 0_u32;
         while clock < TICK_CLOCKS && matches!(self.state, State::Running | State::Holding | State::Resetting) {
@@ -422,6 +446,11 @@ impl<const N: usize> Channel<N> {
         self.line = block.line;
         // a motion is large: it is copied once, from the look-ahead to where it is executed
         match block.work {
+            // under an S law it begins with the next tick
+            Work::Motion(ref motion) if self.window.ticks() > 0 && is_smoothed(motion) => {
+                self.speed = 0;
+                return Next::Stands;
+            }
             Work::Motion(ref motion) => {
                 self.speed = if self.speed == 0 {
                     root(entry)
@@ -461,6 +490,8 @@ impl<const N: usize> Channel<N> {
         self.ahead.clear();
         self.trail.clear();
         self.crank.stand();
+        self.window.clear();
+        self.lead = Lead::new();
         self.current = Current::Nothing;
         self.complete = false;
         self.line = 0;

@@ -69,6 +69,17 @@ fn a_warning_comes_before_its_ok() {
     );
 }
 
+/// SPEC 3.3: live, a feed above the maximum is refused with a message, and the previous one stays in force.
+#[test]
+fn a_feed_above_both_maxima_is_refused_and_the_previous_one_is_kept() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.ask("G1 Z1 F600\n"), "ok\r\n");
+    let answer = bench.ask("G1 Z2 F5001\n");
+    assert!(answer.starts_with("[MSG:") && answer.ends_with("error:43\r\n"), "{answer}");
+    assert!(bench.ask("$G\n").contains(" F600.000 "));
+    assert_eq!(bench.ask("G1 Z2\n"), "ok\r\n");
+}
+
 #[test]
 fn an_overlong_line_is_refused_whole() {
     let mut bench = Bench::new();

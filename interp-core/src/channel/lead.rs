@@ -1,0 +1,188 @@
+//! The S laws: a lead plans ahead, the tool follows as the mean of the lead's last ticks.
+//!
+//! The *lead* advances along the path as the linear law does, from rest to rest, tick by tick; a [`Window`] gives
+//! the tool's advance, and the tool walks it. So acceleration is smoothed before anything is interpolated, and the path
+//! never bends. The lead runs ahead by half a window, over joints and through several blocks where they are short; the
+//! tool takes blocks off the look-ahead as it comes to them. What stands still (dwells, outputs, stops) waits until the
+//! tool has arrived. Hold, reset and override act on the lead. Feeds a turn and threads follow the spindle, whose course
+//! nobody plans: they are run as under the linear law, and begin and end in standstill beside smoothed motions.
+//!
+//! Where the lead slows down for a joint it keeps that speed for a [margin](super::margins) on both sides.
+
+use super::cruise::Cruise;
+use super::lookahead::smooth::{is_smoothed, most};
+use super::lookahead::{Lookahead, pace};
+use super::margins::Margins;
+use super::{Channel, Current, State};
+use crate::block::{Motion, Speed};
+use crate::config::TICK_CLOCKS;
+use crate::governor::Advance;
+use crate::math::to_u32;
+use crate::train::Train;
+
+/// Where the lead is.
+#[derive(Clone, Debug)]
+pub(super) struct Lead {
+    /// How many blocks it is ahead of the one that the tool has begun last.
+    block: usize,
+    /// Length covered of its block.
+    done: u64,
+    speed: Speed,
+    /// Its block's speed under the override of `paced_at` percent.
+    pace: Speed,
+    paced_at: u16,
+    cruise: Cruise,
+    /// Margins behind joints passed.
+    behind: Margins,
+}
+
+impl Lead {
+    /// At rest where the tool is.
+    pub(super) const fn new() -> Self {
+        Self { block: 0, done: 0, speed: 0, pace: 0, paced_at: 0, cruise: Cruise::new(), behind: Margins::EMPTY }
+    }
+}
+
+/// The motion so many blocks ahead of the one that the tool has begun last.
+fn ahead_of<'c, const N: usize>(current: &'c Current, ahead: &'c Lookahead<N>, blocks: usize) -> Option<&'c Motion> {
+    match (blocks.checked_sub(1), current) {
+        (Some(index), _) => ahead.motion(index),
+        (None, Current::Motion(active)) => Some(&active.motion).filter(|motion| is_smoothed(motion)),
+        (None, Current::Nothing | Current::Dwell(_)) => None,
+    }
+}
+
+impl<const N: usize> Channel<N> {
+    /// Whether a tick belongs to the lead and the tool that follows it, not to a block that stands still.
+    pub(super) fn follows(&self) -> bool {
+        match self.current {
+            Current::Motion(ref active) => is_smoothed(&active.motion),
+            Current::Dwell(_) => false,
+            Current::Nothing => !self.window.is_drained() || self.ahead.motion(0).is_some(),
+        }
+    }
+
+    /// One tick of the lead and the tool.
+    // apart from `run`, so that the linear law pays nothing for it
+    #[inline(never)]
+    pub(super) fn follow(&mut self, out: &mut impl Train) {
+        let length = self.lead_on();
+        if length == 0 && self.window.is_drained() {
+            self.speed = 0;
+            return;
+        }
+        let by = self.window.push(length);
+        let known = self.ahead.len();
+        // the tool never passes the lead, so there is a motion for all of it
+        let _ = self.walk(by.cast_signed(), out);
+        let begun = known.wrapping_sub(self.ahead.len());
+        self.lead.block = self.lead.block.saturating_sub(begun);
+        self.speed = if self.window.is_drained() { 0 } else { to_u32(by).max(1) };
+    }
+
+    /// Whether a block that comes now is too late to be planned with: the lead is so near the end of what is known that
+    /// the margins of a joint there might not be kept.
+    pub(super) fn is_late(&self) -> bool {
+        let Some(mut last) = ahead_of(&self.current, &self.ahead, self.lead.block) else { return false };
+        let mut left = last.length.saturating_sub(self.lead.done);
+        let mut index = self.lead.block;
+        while index < self.ahead.len() {
+            let Some(motion) = self.ahead.motion(index) else { return false };
+            last = motion;
+            left = left.saturating_add(motion.length);
+            index = index.wrapping_add(1);
+        }
+        left < Margins::reserve(last, self.window.ticks()).longest()
+    }
+
+    /// The lead's advance in this tick.
+    fn lead_on(&mut self) -> u32 {
+        let runs = matches!(self.state, State::Running);
+        let ticks = self.window.ticks();
+        let (mut clock, mut length) = (0_u32, 0_u64);
+        while clock < TICK_CLOCKS {
+            let lead = &mut self.lead;
+            let motion = ahead_of(&self.current, &self.ahead, lead.block);
+            let Some(motion) = motion.filter(|motion| lead.done < motion.length) else {
+                if !self.pass_joint(runs && length == 0) {
+                    break;
+                }
+                continue;
+            };
+            let left = motion.length.wrapping_sub(lead.done);
+            if lead.paced_at != self.feed_override {
+                (lead.pace, lead.paced_at) = (pace(motion, self.feed_override), self.feed_override);
+            }
+            let target = if runs { lead.pace.min(lead.behind.cap()) } else { 0 };
+            if lead.speed == 0 {
+                if target == 0 {
+                    break;
+                }
+                if left <= u64::from(motion.accel >> 3) {
+                    // what rounding left over is nothing to plan with
+                    lead.done = motion.length;
+                    length = length.wrapping_add(left);
+                    break;
+                }
+            }
+            let (exit, margins) = self.ahead.leave(lead.block, motion, ticks);
+            let calm = left.saturating_sub(margins.longest());
+            let steady = lead.speed == target && clock == 0;
+            let advance = if steady && lead.cruise.holds(target, calm) {
+                Advance { length: u64::from(target), clocks: TICK_CLOCKS, speed: target, done: false }
+            } else {
+                let way = margins.way(motion, left, exit);
+                let target = target.min(way.cap);
+                let budget = TICK_CLOCKS.wrapping_sub(clock);
+                let advance = motion.advance_gently(lead.speed, way.room, way.exit, target, budget);
+                if steady && advance.speed == target && !advance.done && way.cap == Speed::MAX {
+                    lead.cruise.learn(motion, target, calm);
+                }
+                advance
+            };
+            lead.done = lead.done.wrapping_add(advance.length);
+            lead.speed = advance.speed;
+            lead.behind.pass(advance.length);
+            length = length.wrapping_add(advance.length);
+            clock = clock.wrapping_add(advance.clocks);
+            if lead.speed == 0 {
+                break;
+            }
+        }
+        to_u32(length)
+    }
+
+    /// Leads the lead from the end of its block into the next one; from standstill only where it `may`, and when the
+    /// tool has arrived. False where it stays.
+    fn pass_joint(&mut self, may: bool) -> bool {
+        let lead = &mut self.lead;
+        let before = ahead_of(&self.current, &self.ahead, lead.block);
+        let next = self.ahead.motion(lead.block);
+        if self.ahead.stands(lead.block) || before.is_none() {
+            lead.speed = 0;
+        }
+        let Some(next) = next else { return false };
+        lead.behind = match before {
+            Some(before) if lead.speed > 0 => {
+                // what rounding or a lowered feed left too much is shed behind the joint
+                let hard = next.joint.min(before.limit);
+                let mut behind = lead.behind;
+                if hard < most(next) {
+                    behind.keep(hard, self.window.ticks());
+                }
+                let paced = pace(before, self.feed_override);
+                if paced < hard.min(pace(next, self.feed_override)) {
+                    behind.keep(paced, self.window.ticks());
+                }
+                behind
+            }
+            _ if !may || !self.window.is_drained() => return false,
+            _ => Margins::EMPTY,
+        };
+        lead.block = lead.block.wrapping_add(1);
+        lead.done = 0;
+        (lead.pace, lead.paced_at) = (pace(next, self.feed_override), self.feed_override);
+        lead.cruise = Cruise::new();
+        true
+    }
+}
