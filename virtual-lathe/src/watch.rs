@@ -274,6 +274,7 @@ fn setup(parameters: &Parameters, machine: &Machine) -> Setup {
         limits: PerAxis { x: limits(&x), z: limits(&z) },
         event_min_ns,
         uneven: matches!(machine.method, Method::Dda | Method::RateMultiplier),
+        smoothed_ticks: machine.smoothing.ticks().into(),
     }
 }
 

@@ -50,9 +50,13 @@ fn commands() -> impl Strategy<Value = Reach> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
-    fn no_command_at_any_tick_changes_the_path_or_breaks_a_rule(reach in commands()) {
-        let calm = run(PROGRAM, &[]).unwrap().report;
-        let report = run_with(PROGRAM, &[], &reach.0).unwrap().report;
+    fn no_command_at_any_tick_changes_the_path_or_breaks_a_rule(
+        reach in commands(),
+        law in prop_oneof![2 => Just("linear"), 1 => Just("sine"), 1 => Just("parabolic")],
+    ) {
+        let set = [("accel", law), ("max_jerk", "60000")];
+        let calm = run(PROGRAM, &set).unwrap().report;
+        let report = run_with(PROGRAM, &set, &reach.0).unwrap().report;
         prop_assert_eq!(report.faults.total(), 0, "{:?} {:?}", report.faults.first(), reach);
         prop_assert_eq!(report.pulses, calm.pulses);
         prop_assert!(report.walked.pulses <= 0.5 + 1e-6, "{:?}", report.walked);
@@ -64,17 +68,23 @@ proptest! {
 
 #[test]
 fn a_reset_brakes_within_the_limits_and_leaves_the_rest_undone() {
-    let calm = run(PROGRAM, &[]).unwrap().report;
+    for law in ["linear", "sine", "parabolic"] {
+        reset(&[("accel", law), ("max_jerk", "60000")]);
+    }
+}
+
+fn reset(set: &[(&str, &str)]) {
+    let calm = run(PROGRAM, set).unwrap().report;
     for at in [3_u64, 200, 900, 1500] {
-        let report = run_with(PROGRAM, &[], &[(at, Command::Reset)]).unwrap().report;
+        let report = run_with(PROGRAM, set, &[(at, Command::Reset)]).unwrap().report;
         assert!(report.pulses.x + report.pulses.z < calm.pulses.x + calm.pulses.z);
         // the checker misses the motions that were dropped, and nothing else
         let kinds: Vec<_> = report.faults.first().iter().map(|fault| fault.kind).collect();
         let dropped = [measure::FaultKind::MotionsLeft, measure::FaultKind::EndMissed];
         assert!(kinds.iter().all(|kind| dropped.contains(kind)), "{kinds:?}");
-        // braking from 83 mm/s at 500 mm/s2 takes 167 ms
+        // braking from 83 mm/s at 500 mm/s2 takes 167 ms, at 7/8 of it 190 ms and the mean's 33 ms
         #[allow(clippy::cast_precision_loss, reason = "a few thousand ticks")]
         let begun = at as f64 / 1e3;
-        assert!(report.time_s <= begun + 0.2, "{} s after {begun}", report.time_s);
+        assert!(report.time_s <= begun + 0.23, "{} s after {begun}", report.time_s);
     }
 }

@@ -23,6 +23,7 @@ fn main() {
         limits: PerAxis { x: limits, z: limits },
         event_min_ns: 0,
         uneven: false,
+        smoothed_ticks: 0,
     };
     // 20 pulses of Z in a tick, every other one with X; a pulse is two events.
     let tick = |x_plus: u32, z_plus: u32| -> Vec<u32> {

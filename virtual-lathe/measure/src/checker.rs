@@ -62,7 +62,8 @@ impl Checker {
         let scale = Scale::new(setup);
         let here = Here { at: setup.start, ..Here::default() };
         let (x, z) = (setup.limits.x, setup.limits.z);
-        let settle = 2.0 * x.max_feed.max(z.max_feed) / 60.0 / x.max_accel.min(z.max_accel);
+        let smoothed = f64::from(setup.smoothed_ticks) / 1e3;
+        let settle = 2.0 * x.max_feed.max(z.max_feed) / 60.0 / x.max_accel.min(z.max_accel) + 2.0 * smoothed;
         let at = setup.start.map(i64::from);
         let mut faults = Faults::default();
         let rounded = scale.nearest(setup.start_nm);
@@ -78,7 +79,7 @@ impl Checker {
             motor: setup.start,
             port: Port::new(setup.limits),
             accel: Accel::new(&setup),
-            feed: Feed::new(2.0 * scale.coarser / 1e6, whole_clocks(settle)),
+            feed: Feed::new(2.0 * scale.coarser / 1e6, smoothed, whole_clocks(settle)),
             faults,
             per_nm: 1.0 / scale.coarser,
             follow: Follow::new(scale, from),

@@ -15,7 +15,8 @@
 //!     0.2 %. Ramps are not. A wrong plateau is, and its whole error shows.
 //!   - it is *due*: it begins and ends farther from both ends of the motion than v²/a + 2 pulses, twice
 //!     the ramp from standstill to the reference v with the acceleration a that the axes allow along the
-//!     path, begins later than 2 v/a after a change of override (v: the largest feed of an axis), and
+//!     path (where the speed is a mean over a time T, both of them 8/7 v²/a + v T, as the mean is taken of a plan with 7/8 of
+//!     the acceleration), begins later than 2 v/a + 2 T after a change of override (v: the largest feed of an axis), and
 //!     the reference is at most 0.9 of what the axes allow, so that turning leaves them enough to speed up.
 //!     There the feed must be kept; so one that wavers, or is never reached, can't hide.
 //! * The error of a window is |v / reference - 1| in percent.
@@ -80,8 +81,9 @@ struct Target {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Feed {
-    /// Two pulses, in mm, and 2 v/a of the axes in clocks.
+    /// Two pulses, in mm, the time of the mean in s, and 2 v/a of the axes and two such times in clocks.
     margin: f64,
+    smoothed: f64,
     settle: u64,
     settled: u64,
     percent: f64,
@@ -97,10 +99,11 @@ pub(crate) struct Feed {
 }
 
 impl Feed {
-    /// `margin` in mm, `settle` in clocks.
-    pub(crate) fn new(margin: f64, settle: u64) -> Self {
+    /// `margin` in mm, `smoothed` in s, `settle` in clocks.
+    pub(crate) fn new(margin: f64, smoothed: f64, settle: u64) -> Self {
         Self {
             margin,
+            smoothed,
             settle,
             settled: 0,
             percent: 100.0,
@@ -167,7 +170,8 @@ impl Feed {
             return;
         };
         let reference = self.reference(&target);
-        let ramp = reference * reference / target.accel + self.margin;
+        let planned = if self.smoothed > 0.0 { 8.0 / 7.0 } else { 1.0 };
+        let ramp = planned * reference * reference / target.accel + reference * self.smoothed + self.margin;
         let window = Window {
             speed: (mm - last.mm) / seconds(clocks - last.clocks),
             due: last.mm >= ramp

@@ -93,7 +93,7 @@ impl Scale {
 
     /// Highest speed (mm/s) and the acceleration along the path (mm/s²) that the axes allow on
     /// `curves`: each axis's own limit in the least favourable direction met, and sqrt(a R) on arcs,
-    /// where a is the smaller axis acceleration.
+    /// where a is the smaller axis acceleration (where the speed is a mean, 7/8 of it, which it is planned with).
     fn allowed(&self, curves: [Option<&Curve>; 2]) -> (f64, f64) {
         let (x, z) = (self.setup.limits.x, self.setup.limits.z);
         let smaller = x.max_accel.min(z.max_accel);
@@ -106,7 +106,8 @@ impl Scale {
                     accel = accel.min(x.max_accel / part_x).min(z.max_accel / part_z);
                 }
                 Curve::Arc(arc) => {
-                    speed = speed.min((smaller * arc.radius / 1e6).sqrt());
+                    let planned = if self.setup.smoothed_ticks > 0 { 7.0 / 8.0 * smaller } else { smaller };
+                    speed = speed.min((planned * arc.radius / 1e6).sqrt());
                     accel = accel.min(smaller);
                 }
             }

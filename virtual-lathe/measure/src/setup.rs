@@ -111,6 +111,9 @@ pub struct Setup {
     /// The pulses of an axis that moves evenly come unevenly, up to one and a half before or behind its ideal place: so
     /// do those of digital integration and of a rate multiplier.
     pub uneven: bool,
+    /// Ticks over which the speed of the path is a mean of what was planned, 0 for none. Only the feed is judged by it: ramps
+    /// are longer by that.
+    pub smoothed_ticks: u32,
 }
 
 /// Why a set-up was refused.

@@ -37,6 +37,7 @@ pub fn setup() -> Setup {
         limits: PerAxis { x: limits, z: limits },
         event_min_ns: 2_000,
         uneven: false,
+        smoothed_ticks: 0,
     }
 }
 
