@@ -6,6 +6,7 @@
 //! together as the command `turn`. [`serve`] runs the same lathe for a sender at a TCP port.
 
 mod compare_curves;
+pub mod compare_laws;
 pub mod compare_methods;
 pub mod course;
 pub mod dimensions;

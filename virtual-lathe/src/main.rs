@@ -155,7 +155,10 @@ fn main() -> ExitCode {
         })),
         Command::Examples(options) => ExitCode::from(gallery::write(&options.page)),
         Command::CompareMethods => {
-            match virtual_lathe::compare_methods::compare(std::path::Path::new("out"), &mut std::io::stdout().lock()) {
+            let (folder, mut out) = (std::path::Path::new("out"), std::io::stdout().lock());
+            let drawn = virtual_lathe::compare_methods::compare(folder, &mut out)
+                .and_then(|()| virtual_lathe::compare_laws::compare(folder, &mut out));
+            match drawn {
                 Ok(()) => ExitCode::SUCCESS,
                 Err(error) => {
                     let _ = writeln!(std::io::stderr(), "error: {error}");

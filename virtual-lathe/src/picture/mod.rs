@@ -12,6 +12,7 @@ mod chart;
 mod curve;
 mod film;
 mod inset;
+mod laws;
 mod layout;
 mod main_view;
 mod methods;
@@ -27,6 +28,7 @@ mod view;
 
 pub use chart::{Chart, Look, Series, Strip};
 pub use film::{Film, Form};
+pub use laws::{LawPanel, laws};
 pub use methods::{Panel, methods, polyline};
 pub use raster::{PictureError, png};
 pub use thin::Thinner;
