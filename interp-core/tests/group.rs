@@ -40,6 +40,7 @@ fn job() -> impl Strategy<Value = Job> {
     let pulses = prop::sample::select(vec![1_250_u32, 1_000, 2_500]);
     (pulses, steps, commands, 0_usize..30).prop_map(|(pulse_nm, steps, mut commands, blocks)| {
         commands.sort_unstable();
+        commands.push((STOP, 1));
         Job { pulse_nm, steps, commands, blocks }
     })
 }
@@ -77,7 +78,9 @@ impl Job {
     }
 }
 
-const TICKS: usize = 1_500;
+const TICKS: usize = 2_000;
+/// Here a random job is reset, so that all pulses planned are played in the end.
+const STOP: usize = 1_500;
 
 /// Edges of one lathe: clock from the start, and its levels from then on.
 type Edges = Vec<(u64, u16)>;

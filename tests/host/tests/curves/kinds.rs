@@ -278,9 +278,10 @@ impl Sample {
         }
     }
 
-    /// Pulses of second difference that rounding fakes.
+    /// Pulses of second difference that rounding to the lattice fakes: 4 for an axis that steps only along with the other,
+    /// and 2 more where an axis turns round in a corner, which splines may have.
     pub(crate) fn faked(&self) -> f64 {
-        4.0
+        if matches!(self.kind, Kind::Spline { .. } | Kind::Nurbs { .. }) { 6.0 } else { 4.0 }
     }
 
     /// Nowhere so tightly bent that the quick machine would have to slow down.
