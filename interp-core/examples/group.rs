@@ -9,7 +9,10 @@ use interp_core::units::{Feedrate, Lattice, Length, Point, PulseSize};
 use std::time::Instant;
 
 fn main() {
-    (measure::<1>(), measure::<2>(), measure::<3>(), measure::<4>());
+    measure::<1>();
+    measure::<2>();
+    measure::<3>();
+    measure::<4>();
 }
 
 fn measure<const N: usize>() {

@@ -120,7 +120,7 @@ fn grouped<const N: usize>(grid: Grid, jobs: &[Job; N]) -> (Vec<Vec<Event>>, [(S
             });
         }
         let mut events = Vec::new();
-        group.tick(&mut |lathe| sources[lathe].next(), &mut |event: Event| events.push(event));
+        group.tick(&mut |lathe| sources.get_mut(lathe)?.next(), &mut |event: Event| events.push(event));
         train.push(events);
     }
     (train, std::array::from_fn(|lathe| group.lathe(lathe).map(|c| (c.state(), c.position())).unwrap()))
@@ -202,7 +202,7 @@ proptest! {
         check_train(&four, grid);
         // in other company, in another place, and in a smaller group
         let (mixed, _) = grouped(grid, &[other.clone(), c.clone(), other, a.clone()]);
-        let (single, _) = grouped(grid, &[a.clone()]);
+        let (single, _) = grouped(grid, std::array::from_ref(&a));
         prop_assert_eq!(edges(&four, 0), edges(&mixed, 3));
         prop_assert_eq!(edges(&four, 0), edges(&single, 0));
         prop_assert_eq!(edges(&four, 2), edges(&mixed, 1));

@@ -18,8 +18,10 @@ const ACCEL: f64 = 500.0;
 
 /// The feed of a motion that has one.
 fn fed(motion: &Motion) -> Speed {
-    let Feed::PerTick(feed) = motion.feed else { panic!("a feed a minute") };
-    feed
+    match motion.feed {
+        Feed::PerTick(feed) => feed,
+        Feed::Rapid | Feed::PerTurn(_) | Feed::Thread(..) => unreachable!("a feed a minute"),
+    }
 }
 
 fn config(accel: [u32; 2], jump: u32) -> Config {
@@ -249,7 +251,7 @@ impl Run {
         let (mut number, mut begun, mut at) = (0, 0.0, 0.0);
         for (tick, advance) in self.advance.iter().enumerate() {
             let percent = f64::from(self.percent[tick]) / 100.0;
-            let feed = |number: usize| f64::from(fed(&all[number])) * percent * 1.001 + 4096.0;
+            let feed = |number: usize| f64::from(fed(all[number])) * percent * 1.001 + 4096.0;
             let first = number;
             at += advance;
             while number + 1 < all.len() && at > begun + all[number].length as f64 {
@@ -388,7 +390,7 @@ fn a_corner_between_long_arms_is_passed_at_its_speed() {
             let run = run(machine, blocks(&machine, &pieces), &[]);
             run.keeps_limits().unwrap();
             let all: Vec<_> = motions(&run.works).collect();
-            let cap = all[1].joint.min(fed(&all[0]));
+            let cap = all[1].joint.min(fed(all[0]));
             let mut at = 0.0;
             let at_joint = run.advance.iter().find(|advance| {
                 at += **advance;
