@@ -27,6 +27,7 @@ fn main() {}
 #[cfg(target_os = "none")]
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
+    use core::mem::MaybeUninit;
     use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
     use handcnc::background::inbox::{Inbox, LOST};
@@ -75,7 +76,7 @@ mod app {
         emergency: EmergencyInput,
         switch: Drives,
         steps: Steps,
-        foreground: Foreground<'static>,
+        foreground: &'static mut Foreground<'static>,
         train: Writer<'static>,
         width: Width,
         contact: Contact,
@@ -85,7 +86,7 @@ mod app {
         bench: Bench,
         receiver: Receiver,
         inbox: Inbox<'static>,
-        link: Link,
+        link: &'static mut Link,
         sender: Sender,
         bytes: Consumer<'static, u8>,
         realtime: Consumer<'static, Realtime>,
@@ -99,6 +100,9 @@ mod app {
         realtime_queue: Queue<Realtime, REALTIME> = Queue::new(),
         blocks_queue: Queue<Block, BLOCK_QUEUE> = Queue::new(),
         commands_queue: Queue<Command, COMMAND_QUEUE> = Queue::new(),
+        // the largest are made where they stay: on the way through the stack they would be there three times
+        foreground_place: MaybeUninit<Foreground<'static>> = MaybeUninit::uninit(),
+        link_place: MaybeUninit<Link> = MaybeUninit::uninit(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let have = board::setup(cx.device);
@@ -111,13 +115,14 @@ mod app {
         let (commands, commands_out) = cx.local.commands_queue.split();
         let start = parameters.start();
         let position = Lattice { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) };
-        let mut foreground = Foreground::new(&machine, position, blocks_out, commands_out);
+        let new = Foreground::new(&machine, position, blocks_out, commands_out);
+        let foreground = cx.local.foreground_place.write(new);
         foreground.obey(Command::FeedOverride(parameters.feed_override()));
         defmt::println!("{=str}, restarted by the watchdog: {=bool}", env!("CARGO_PKG_VERSION"), have.restarted);
         if have.restarted {
             foreground.raise(Alarm::Watchdog);
         }
-        let mut link = Link::new(parameters, machine);
+        let link = cx.local.link_place.write(Link::new(parameters, machine));
         link.banner(&mut sender);
         rtic::pend(Interrupt::I2C3_ER); // the first tick, played while the second is made
         timer.start(); // the banner alone takes more than a tick

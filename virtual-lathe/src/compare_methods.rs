@@ -1,6 +1,6 @@
 //! The command `compare-methods`: what each pulse method does on a line and on an arc through several quadrants.
 //!
-//! A third sheet, of [`compare_curves`], has every kind of curve. Each method's steps are those that the channel plays, decoded from its train, on pulses so coarse that single steps
+//! A third sheet has every kind of curve. Each method's steps are those that the channel plays, decoded from its train, on pulses so coarse that single steps
 //! show.
 
 use std::io::{self, Write};
