@@ -322,7 +322,7 @@ impl Builder {
         let by_axis = self.speed_limit(heading);
         let accel = Self::least(self.machine.x.accel, self.machine.z.accel, heading).0;
         let steps = Proportion::new(u64::from(line.steps()) << 16, length, length);
-        let reach = to_u64(dx.abs().max(dz.abs())).max(1);
+        let reach = to_u64(dx.saturating_abs().max(dz.saturating_abs())).max(1);
         let run = Run { length, reach, entry: heading, exit: heading, by_axis, by_bend: Speed::MAX, accel };
         #[cfg(feature = "methods")]
         let curve = match self.machine.method {

@@ -74,15 +74,17 @@ impl Smoothing {
     /// assert_eq!(Smoothing::new(SpeedLaw::Parabolic, 500 << 12, 50_000).unwrap().ticks(), 20);
     /// assert_eq!(Smoothing::new(SpeedLaw::Parabolic, 500 << 12, 10_000), Err(15_625));
     /// ```
-    pub const fn new(law: SpeedLaw, accel: u32, jerk: u32) -> Result<Self, u32> {
+    pub fn new(law: SpeedLaw, accel: u32, jerk: u32) -> Result<Self, u32> {
         if matches!(law, SpeedLaw::Linear) {
             return Ok(Self::NONE);
         }
         // a tick is a thousandth of a second, and so is the unit of `reversal`
-        let change = (accel as u64).wrapping_mul(law.reversal());
-        let ticks = change.div_ceil(if jerk == 0 { 1 } else { (jerk as u64) << 12 });
+        let change = u64::from(accel).wrapping_mul(law.reversal());
+        // rounded up: to the whole tick, and to the whole jerk
+        let up = |value: u64, unit: u64| value.saturating_add(unit.wrapping_sub(1)).checked_div(unit);
+        let Some(ticks) = up(change, u64::from(jerk.max(1)) << 12) else { return Ok(Self::NONE) };
         if ticks > MAX_TICKS as u64 {
-            return Err(to_u32(change.div_ceil((MAX_TICKS as u64) << 12)));
+            return Err(to_u32(up(change, (MAX_TICKS as u64) << 12).unwrap_or(u64::MAX)));
         }
         #[expect(clippy::cast_possible_truncation, reason = "at most MAX_TICKS")]
         let ticks = if ticks < 2 { 2 } else { ticks as u8 };

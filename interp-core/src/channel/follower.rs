@@ -68,7 +68,7 @@ impl Follower {
         };
         let most = i64::try_from(most).unwrap_or(i64::MAX).min(pace.speed);
         let wanted = most.wrapping_mul(distance.signum());
-        self.speed = wanted.clamp(self.speed.wrapping_sub(accel), self.speed.wrapping_add(accel));
+        self.speed = wanted.max(self.speed.wrapping_sub(accel)).min(self.speed.wrapping_add(accel));
         self.place = self.place.wrapping_add(self.speed);
         self.pulses().wrapping_sub(before)
     }

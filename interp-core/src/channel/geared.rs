@@ -73,7 +73,7 @@ impl<const N: usize> Channel<N> {
         let advance = if held {
             self.crank.driven.locked = false;
             let accel = i64::from(bounds.accel);
-            before.saturating_sub(before.clamp(accel.wrapping_neg(), accel))
+            before.saturating_sub(before.max(accel.wrapping_neg()).min(accel))
         } else {
             self.crank.driven.trouble = trouble(feed, gain, bounds);
             self.toward(distance, feed, bounds, count)
@@ -131,7 +131,7 @@ impl<const N: usize> Channel<N> {
         };
         let rest = room.saturating_sub(self.crank.follower.advance().unsigned_abs());
         let most = approach(room, motion.accel).max(i64::from(root(motion.reachable(rest, exit))));
-        let within = advance.clamp(most.wrapping_neg(), most);
+        let within = advance.max(most.wrapping_neg()).min(most);
         if within != advance {
             self.crank.driven.locked = false;
             if within == 0 && !self.crank.in_thread {

@@ -44,7 +44,7 @@ impl Backlash {
 
     /// The program has moved by so many pulses.
     pub fn moved(&mut self, pulses: i32) {
-        self.taken = self.taken.saturating_add(pulses).clamp(0, self.distance);
+        self.taken = self.taken.saturating_add(pulses).max(0).min(self.distance);
     }
 
     /// How far the motor has to go beyond the program: 0 after travel in plus, minus the play after travel in minus.

@@ -84,10 +84,10 @@ impl Follower {
         let behind = distance.saturating_sub(feed);
         let most = approach(behind.unsigned_abs(), bounds.accel.saturating_sub(reserve).max(1));
         let closing = if behind < 0 { most.wrapping_neg() } else { most };
-        let wish = feed.saturating_add(closing).clamp(speed.wrapping_neg(), speed);
+        let wish = feed.saturating_add(closing).max(speed.wrapping_neg()).min(speed);
         // limits of the acceleration come last: a speed above the largest is left as fast as may be
         let (least, most) = (self.advance.saturating_sub(accel), self.advance.saturating_add(accel));
-        self.advance = wish.clamp(least, most);
+        self.advance = wish.max(least).min(most);
         self.advance
     }
 }

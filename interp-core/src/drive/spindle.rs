@@ -146,7 +146,7 @@ impl Spindle {
 
     /// Counts by which the last index pulse was off, where that is more than may be.
     pub fn lost(&self) -> Option<i32> {
-        (i64::from(self.off).abs() > INDEX_TOLERANCE).then_some(self.off)
+        (i64::from(self.off).saturating_abs() > INDEX_TOLERANCE).then_some(self.off)
     }
 
     /// The angle at the end of the tick that is being made.

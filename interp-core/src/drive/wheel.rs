@@ -68,15 +68,15 @@ impl Wheel {
         let all = self.to_go.saturating_add(self.waiting);
         let room = click.length().saturating_add(tick);
         let (least, most) = (braking.min(0).saturating_sub(room), braking.max(0).saturating_add(room));
-        let surplus = all.saturating_sub(all.clamp(least, most));
+        let surplus = all.saturating_sub(all.max(least).min(most));
         // whole counts, so that what is left of the last click is kept
         let dropped = surplus.checked_div(click.count()).unwrap_or(0);
         self.waiting = self.waiting.saturating_sub(dropped.saturating_mul(click.count()));
         // no more than a click waits, and of that a share is let go, the last of it as a whole
-        let kept = self.waiting.clamp(click.length().wrapping_neg(), click.length());
+        let kept = self.waiting.max(click.length().wrapping_neg()).min(click.length());
         let beyond = self.waiting.saturating_sub(kept);
         let share = kept >> SPREAD;
-        let let_go = if kept.abs() <= click.length() >> 4 { kept } else { share };
+        let let_go = if kept.saturating_abs() <= click.length() >> 4 { kept } else { share };
         self.waiting = kept.saturating_sub(let_go);
         self.to_go = self.to_go.saturating_add(beyond).saturating_add(let_go);
         to_i32(dropped)
@@ -86,8 +86,9 @@ impl Wheel {
     pub fn stop(&mut self, click: Click) -> i32 {
         let all = self.to_go.saturating_add(self.waiting);
         *self = Self::new();
-        let count = click.count().max(1);
-        let whole = all.unsigned_abs().div_ceil(count.unsigned_abs()).cast_signed();
+        let count = click.count().unsigned_abs();
+        let up = all.unsigned_abs().saturating_add(count.saturating_sub(1));
+        let whole = up.checked_div(count).unwrap_or(0).cast_signed();
         to_i32(if all < 0 { whole.wrapping_neg() } else { whole })
     }
 }
