@@ -71,7 +71,35 @@ const FAST: [&str; 10] = [
     "z.min_space_ns=2000",
 ];
 
-const CASES: [Case; 6] = [
+/// The same with an axis's play taken up, expansion followed, and an override.
+const COMPENSATED: [&str; 14] = [
+    "x.pulse_nm=1000",
+    "z.pulse_nm=1000",
+    "x.max_feed=6000",
+    "z.max_feed=6000",
+    "x.min_space_ns=4500",
+    "z.min_space_ns=4500",
+    "x.backlash_um=20",
+    "z.backlash_um=30",
+    "x.backlash_distance_um=200",
+    "z.backlash_distance_um=200",
+    "x.thermal_um_per_m_k=11.5",
+    "z.thermal_um_per_m_k=11.5",
+    "temperature_c=35",
+    "feed_override=90",
+];
+
+const SINE: [&str; 7] = [
+    "x.pulse_nm=1000",
+    "z.pulse_nm=1000",
+    "x.max_feed=6000",
+    "z.max_feed=6000",
+    "x.min_space_ns=4500",
+    "z.min_space_ns=4500",
+    "accel=sine",
+];
+
+const CASES: [Case; 10] = [
     Case("line 4:3, X at 80 kHz", "G21 G90\nG4 P0.05\nG1 X40 Z30 F6000\nM2\n", &PULSES),
     Case("arc, R 10 mm, 25 kHz", "G21 G90\nG4 P0.05\nG3 X-10 Z-10 I-10 K0 F1500\nM2\n", &PULSES),
     // its centre lies between the lattice lines, so the walk needs 64 bits
@@ -79,6 +107,14 @@ const CASES: [Case; 6] = [
     Case("line 1:1, 71 kHz", "G21 G90\nG4 P0.05\nG1 X30 Z30 F6000\nM2\n", &PULSES),
     Case("line 4:3, X at 200 kHz", "G21 G90\nG4 P0.05\nG0 X80 Z60\nM2\n", &FAST),
     Case("arc, R 50 mm, 200 kHz", "G21 G90\nG4 P0.05\nG3 X-50 Z-50 I-50 K0 F12000\nM2\n", &FAST),
+    Case("line 4:3, compensated, override 90 %", "G21 G90\nG4 P0.05\nG1 X40 Z30 F6000\nM2\n", &COMPENSATED),
+    Case(
+        "arc, R 10 mm, compensated, override 90 %",
+        "G21 G90\nG4 P0.05\nG3 X-10 Z-10 I-10 K0 F1500\nM2\n",
+        &COMPENSATED,
+    ),
+    Case("line 4:3, sine law", "G21 G90\nG4 P0.05\nG1 X40 Z30 F6000\nM2\n", &SINE),
+    Case("arc, R 10 mm, sine law", "G21 G90\nG4 P0.05\nG3 X-10 Z-10 I-10 K0 F1500\nM2\n", &SINE),
 ];
 
 /// The chip that shares are told of: its clock, clocks of an instruction, of an interrupt's entry and exit
@@ -111,8 +147,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     }
     let mut cases = Map::new();
     for (name, counts) in &counted {
-        // the two cases of one curve with the fewest and the most steps a tick
-        let kin = counted.iter().filter(|(other, _)| other.split(' ').next() == name.split(' ').next());
+        // the two cases of one curve with the fewest and the most steps a tick, under the linear law and uncompensated
+        let plain = |name: &str| !name.contains("law") && !name.contains("compensated");
+        let kin = counted.iter().filter(|(other, _)| plain(other) && other.split(' ').next() == name.split(' ').next());
         let per_step = slope(kin.map(|(_, counts)| counts));
         cases.insert((*name).into(), figures(counts, per_step));
     }
