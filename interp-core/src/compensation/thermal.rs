@@ -6,7 +6,7 @@
 /// Fraction bits of a relative change of length.
 const BITS: u32 = 36;
 
-/// Most by which the relative change of length follows in a tick, [`BITS`] fraction bits: about 1 um a metre a second.
+/// Most by which the relative change of length follows in a tick, 36 fraction bits: about 1 um a metre a second.
 pub const STEP: i64 = 64;
 
 /// Thermal expansion of one axis.
