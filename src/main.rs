@@ -115,14 +115,14 @@ mod app {
         let (commands, commands_out) = cx.local.commands_queue.split();
         let start = parameters.start();
         let position = Lattice { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) };
-        let new = Foreground::new(&machine, position, blocks_out, commands_out);
-        let foreground = cx.local.foreground_place.write(new);
+        let new = || Foreground::new(&machine, position, blocks_out, commands_out);
+        let foreground = make(cx.local.foreground_place, new);
         foreground.obey(Command::FeedOverride(parameters.feed_override()));
         defmt::println!("{=str}, restarted by the watchdog: {=bool}", env!("CARGO_PKG_VERSION"), have.restarted);
         if have.restarted {
             foreground.raise(Alarm::Watchdog);
         }
-        let link = cx.local.link_place.write(Link::new(parameters, machine));
+        let link = make(cx.local.link_place, || Link::new(parameters, machine));
         link.banner(&mut sender);
         rtic::pend(Interrupt::I2C3_ER); // the first tick, played while the second is made
         timer.start(); // the banner alone takes more than a tick
@@ -151,6 +151,12 @@ mod app {
                 commands,
             },
         )
+    }
+
+    /// Makes something large where it stays. Out of line, so that what passes over the stack is there for the call only.
+    #[inline(never)]
+    fn make<T>(place: &'static mut MaybeUninit<T>, new: impl FnOnce() -> T) -> &'static mut T {
+        place.write(new())
     }
 
     /// Everything off, and no step leaves the chip; the next tick raises the alarm.
