@@ -122,7 +122,10 @@ pub(crate) fn play(machine: &Machine, from: Lattice, motions: &[Motion]) -> Vec<
     channel.start();
     let start = (from.x, from.z);
     let (mut at, mut levels, mut steps) = (start, Levels::LOW, vec![start]);
-    while channel.state() != State::Ended {
+    // the last pulse may be played in the tick behind the end
+    let mut behind = 0;
+    while behind < 2 {
+        behind += u32::from(channel.state() == State::Ended);
         let mut play = |event: Event| {
             let now = event.levels();
             let rises = |axis| now.step(axis) && !levels.step(axis);

@@ -30,7 +30,10 @@ impl Played {
         let start = (from.x, from.z);
         let (mut at, mut levels, mut clock) = (start, Levels::LOW, 0_u64);
         let (mut steps, mut ticks) = (Vec::new(), vec![start]);
-        while channel.state() != State::Ended {
+        // the last pulse may be played in the tick behind the end
+        let mut behind = 0;
+        while behind < 2 {
+            behind += u32::from(channel.state() == State::Ended);
             let mut play = |event: Event| {
                 let now = event.levels();
                 let pulse = |axis| match (now.step(axis) && !levels.step(axis), now.plus(axis)) {
