@@ -62,7 +62,7 @@ use super::parameters::Parameters;
 use crate::foreground::Command;
 use crate::foreground::alarm::Alarm;
 use crate::queue::Producer;
-use outbox::{Outbox, Settling};
+use outbox::{Flow, Outbox, Settling};
 use program::Accessories;
 use receiver::{Received, Receiver};
 use refusal::Refusal;
@@ -255,13 +255,13 @@ impl Link {
             Realtime::Hold | Realtime::Start if snapshot.alarm.is_some() => return,
             Realtime::Hold => {
                 self.held = true;
-                self.outbox.flow = Some(Command::Hold);
+                self.outbox.flow = Some(Flow::Hold);
             }
             Realtime::Start => {
                 self.held = false;
                 // an idle channel is started by its blocks, and a resetting one not at all
                 if !self.resetting && !self.is_still(snapshot) {
-                    self.outbox.flow = Some(Command::Start);
+                    self.outbox.flow = Some(Flow::Start);
                 }
             }
             Realtime::Reset => self.reset(),
@@ -301,7 +301,7 @@ impl Link {
             return self.unlocked(snapshot, out);
         }
         if still && !self.held && !blocks.is_empty() {
-            self.outbox.flow = Some(Command::Start);
+            self.outbox.flow = Some(Flow::Start);
             self.send(commands);
             return true;
         }

@@ -19,6 +19,13 @@ pub(super) enum Settling {
     Settled,
 }
 
+/// What the program is to do.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(super) enum Flow {
+    Hold,
+    Start,
+}
+
 /// Commands that found the queue full, or were not sent yet. The later of two wishes counts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outbox {
@@ -29,7 +36,7 @@ pub(super) struct Outbox {
     pub(super) percent: Option<u16>,
     pub(super) optional_stop: Option<bool>,
     /// Hold or start.
-    pub(super) flow: Option<Command>,
+    pub(super) flow: Option<Flow>,
 }
 
 impl Outbox {
@@ -55,11 +62,25 @@ impl Outbox {
 
     /// What is to be sent first.
     fn first(&self) -> Option<Command> {
-        let reset = self.reset.then_some(Command::Reset);
-        let machine = self.machine.map(Command::Configure);
-        let unlock = self.unlock.then_some(Command::Unlock);
-        let percent = self.percent.map(Command::FeedOverride);
-        let optional_stop = self.optional_stop.map(Command::OptionalStop);
-        reset.or(machine).or(unlock).or(percent).or(optional_stop).or(self.flow)
+        // one after the other: a machine is large, and this is asked in every tick
+        if self.reset {
+            return Some(Command::Reset);
+        }
+        if let Some(machine) = self.machine {
+            return Some(Command::Configure(machine));
+        }
+        if self.unlock {
+            return Some(Command::Unlock);
+        }
+        if let Some(percent) = self.percent {
+            return Some(Command::FeedOverride(percent));
+        }
+        if let Some(on) = self.optional_stop {
+            return Some(Command::OptionalStop(on));
+        }
+        self.flow.map(|flow| match flow {
+            Flow::Hold => Command::Hold,
+            Flow::Start => Command::Start,
+        })
     }
 }
