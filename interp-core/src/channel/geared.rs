@@ -121,13 +121,16 @@ impl<const N: usize> Channel<N> {
         let back = advance < 0;
         let Current::Motion(active) = &self.current else { return advance };
         let motion = &active.motion;
-        let (room, exit) = if back {
-            // a thread is not left at its start
-            let start = if self.crank.in_thread { self.crank.tool.max(0).unsigned_abs() } else { u64::MAX };
-            let exit = if self.crank.in_thread { 0 } else { self.trail.exit_back() };
-            (self.room(true).min(start), exit)
-        } else {
-            (self.room(false), self.trail.exit(&self.ahead, motion))
+        // a thread is not left at its start
+        let start = if back && self.crank.in_thread { self.crank.tool.max(0).unsigned_abs() } else { u64::MAX };
+        let room = self.room(back).min(start);
+        if is_far(room, advance.unsigned_abs(), motion.accel) {
+            return advance;
+        }
+        let exit = match (back, self.crank.in_thread) {
+            (true, true) => 0,
+            (true, false) => self.trail.exit_back(),
+            (false, _) => self.trail.exit(&self.ahead, motion),
         };
         let rest = room.saturating_sub(self.crank.follower.advance().unsigned_abs());
         let most = approach(room, motion.accel).max(i64::from(root(motion.reachable(rest, exit))));
@@ -183,6 +186,16 @@ impl<const N: usize> Channel<N> {
     }
 }
 
+/// Whether an end is so far that [`approach`] certainly allows an advance, as it does from
+/// `sqrt(2 a room) - a / 2 - 1 >= sqrt(a room)` on, which holds where `room >= 2 a + 6`, if the advance is below that. One product
+/// tells, in place of roots and divisions in every tick.
+const fn is_far(room: u64, advance: u64, accel: u32) -> bool {
+    let accel = if accel == 0 { 1 } else { accel as u64 };
+    advance >> 31 == 0
+        && room >= accel.saturating_mul(2).saturating_add(6)
+        && advance.wrapping_mul(advance) <= accel.saturating_mul(room)
+}
+
 /// What the spindle asks for beyond the limits.
 fn trouble(feed: i64, gain: i64, bounds: Bounds) -> Option<Trouble> {
     let (needed, gain) = (to_u32(feed.unsigned_abs()), to_u32(gain.unsigned_abs()));
@@ -194,5 +207,31 @@ fn trouble(feed: i64, gain: i64, bounds: Bounds) -> Option<Trouble> {
         Some(Trouble::TooHard { needed: gain, limit: bounds.accel })
     } else {
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// What is passed unasked is what the question would have allowed.
+        #[test]
+        fn an_end_that_is_far_allows_the_advance(
+            accel in prop_oneof![0_u32..20, 1_u32..u32::MAX], part in 0_u64..1 << 20, advance in 0_u64..1 << 31, bits in 0_u32..31,
+        ) {
+            let advance = advance >> bits;
+            // around where the answer changes
+            let edge = advance.saturating_mul(advance) / u64::from(accel.max(1)) + 2 * u64::from(accel);
+            for room in [edge, edge + part, edge.saturating_sub(part), edge / 2 + part] {
+                prop_assert!(!is_far(room, advance, accel) || approach(room, accel) >= advance.cast_signed(), "{room}");
+            }
+        }
+
+        #[test]
+        fn an_end_far_enough_is_far(accel in 1_u32..1 << 24, advance in 0_u64..1 << 31) {
+            prop_assert!(is_far(advance * advance / u64::from(accel) + 2 * u64::from(accel) + 7, advance, accel));
+        }
     }
 }

@@ -206,8 +206,10 @@ mod tests {
                 for _ in 0..times {
                     angle += step;
                     let off = i128::from(gearing.at(angle)) - exact(nm, turns, counts, angle);
-                    let allowed = (i128::from(nm) << 12) / i128::from(turns) / (1 << 28) + 4;
-                    prop_assert!(off.abs() <= allowed, "{off} {allowed}");
+                    // all is rounded down: the ratio, by a 2^29th of a turn's path (factor and cut angle); its numerator, the
+                    // product and the path of whole turns, by less than a unit each
+                    let allowed = (i128::from(nm) << 12) / i128::from(turns) / (1 << 29) + 3;
+                    prop_assert!((-allowed..=0).contains(&off), "{off} {allowed}");
                 }
             }
         }
