@@ -134,6 +134,15 @@ pub struct Motion {
     pub continues: bool,
 }
 
+impl Motion {
+    /// Sets the feed, but of a rapid or a thread.
+    pub const fn set_feed(&mut self, feed: Feed) {
+        if matches!(self.feed, Feed::PerTick(_) | Feed::PerTurn(_)) {
+            self.feed = feed;
+        }
+    }
+}
+
 /// What the channel executes.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Block {

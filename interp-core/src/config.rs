@@ -85,8 +85,10 @@ pub struct AxisLimits {
     pub pulse: PulseSize,
     /// Largest speed, nm a tick, 12 fraction bits.
     pub speed: u32,
-    /// Largest acceleration, nm a tick squared, 12 fraction bits.
+    /// Largest acceleration, nm a tick squared, 12 fraction bits: the program's.
     pub accel: u32,
+    /// What a handwheel has besides while the program moves; 0 without handwheels.
+    pub by_hand: u32,
     /// Largest jump of speed, nm a tick, 12 fraction bits.
     pub jump: u32,
     /// Step pin high, clocks.
@@ -160,12 +162,22 @@ impl AxisConfig {
             pulse: self.pulse,
             speed: speed_of(self.max_feed),
             accel: to_u32(u64::from(self.max_accel).saturating_mul(4096) / 1_000),
+            by_hand: 0,
             jump: to_u32(u64::from(self.max_jump).saturating_mul(4096)),
             width,
             space,
             setup: clocks(self.dir_setup_ns),
             hold: clocks(self.dir_hold_ns),
         })
+    }
+}
+
+impl AxisLimits {
+    const fn with_hand(mut self) -> Self {
+        let all = self.accel.saturating_add(self.by_hand);
+        self.by_hand = to_u32((all as u64).saturating_mul(3) / 10);
+        self.accel = all.saturating_sub(self.by_hand);
+        self
     }
 }
 
@@ -196,6 +208,15 @@ impl Config {
 }
 
 impl Machine {
+    /// The same machine with handwheels that may be turned while the program moves: the program plans with 70 % of the
+    /// acceleration of each axis, the wheels have the rest. To be called before [`with_law`](Self::with_law).
+    #[must_use]
+    pub const fn with_hands(mut self) -> Self {
+        self.x = self.x.with_hand();
+        self.z = self.z.with_hand();
+        self
+    }
+
     /// The same machine under a speed law with a jerk of at most `jerk` mm/s3 along the path.
     ///
     /// The S laws plan with 7/8 of the axes' accelerations: their mean over a joint of a line and an arc may need up to

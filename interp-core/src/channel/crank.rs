@@ -1,6 +1,6 @@
 //! Drives other than time: which one turns the crank, their inputs, and what they keep from tick to tick.
 
-use super::lookahead::{AT_LIMIT, pace};
+use super::lookahead::{Overrides, pace};
 use super::{Active, Channel, Current, State};
 use crate::block::{Feed, Output, Speed, Work};
 use crate::config::TICK_CLOCKS;
@@ -12,6 +12,15 @@ use crate::drive::wheel::Wheel;
 use crate::drive::{Drive, DriveRefusal, Driven, Inputs};
 use crate::math::to_u32;
 use crate::train::Train;
+
+/// The contour is not driven by the wheel's counts but pulled along, back or forth, at a speed.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Pull {
+    /// Backward.
+    pub back: bool,
+    /// nm a tick with 12 fraction bits; at 0 it stands.
+    pub speed: Speed,
+}
 
 /// What drives other than time keep.
 #[derive(Clone, Debug)]
@@ -26,6 +35,7 @@ pub(super) struct Crank {
     pub(super) driven: Driven,
     pub(super) counts: i16,
     pub(super) wheel: Wheel,
+    pub(super) pull: Option<Pull>,
     pub(super) spindle: Option<Spindle>,
     /// From the spindle's angle to path, while it drives.
     pub(super) gearing: Option<Gearing>,
@@ -46,6 +56,7 @@ impl Crank {
             driven: Driven { dropped: 0, locked: false, trouble: None },
             counts: 0,
             wheel: Wheel::new(),
+            pull: None,
             spindle: None,
             gearing: None,
             tool: 0,
@@ -54,11 +65,11 @@ impl Crank {
         }
     }
 
-    /// Percent of the feed that the look-ahead plans with.
-    pub(super) const fn planned_override(&self, feed_override: u16) -> u16 {
+    /// What the look-ahead plans with.
+    pub(super) const fn planned_with(&self, overrides: Overrides) -> Overrides {
         match self.drive {
-            Drive::Time => feed_override,
-            Drive::Spindle(_) | Drive::Wheel(_) => AT_LIMIT,
+            Drive::Time => overrides,
+            Drive::Spindle(_) | Drive::Wheel(_) => Overrides::AT_LIMIT,
         }
     }
 
@@ -97,13 +108,13 @@ impl Crank {
 impl Active {
     /// Finds the pace anew, under another override or spindle speed.
     #[cold]
-    pub(super) fn repace(&mut self, feed_override: u16, crank: &Crank) {
+    pub(super) fn repace(&mut self, overrides: Overrides, crank: &Crank) {
         if matches!(self.motion.feed, Feed::PerTurn(_)) {
             // the override that it is paced at stays none, so it is found anew in every tick
-            let scaled = u64::from(crank.per_turn()).wrapping_mul(u64::from(feed_override)) / 100;
+            let scaled = u64::from(crank.per_turn()).wrapping_mul(u64::from(overrides.feed)) / 100;
             self.pace = to_u32(scaled).min(self.motion.limit);
         } else {
-            (self.pace, self.paced_at) = (pace(&self.motion, feed_override), feed_override);
+            (self.pace, self.paced_at) = (pace(&self.motion, overrides), overrides);
         }
     }
 }
@@ -150,6 +161,15 @@ impl<const N: usize> Channel<N> {
         Ok(())
     }
 
+    /// Pulls the path along in place of the contour wheel, from the next tick on, while the wheel is the drive; `None` lets it
+    /// brake, and leaves it to the wheel when it stands.
+    pub const fn pull(&mut self, pull: Option<Pull>) {
+        self.crank.pull = match (pull, self.crank.pull) {
+            (None, Some(Pull { back, .. })) => Some(Pull { back, speed: 0 }),
+            (pull, _) => pull,
+        };
+    }
+
     /// Takes the readings of the tick's start, before [`tick`](Self::tick). Counts of the wheel add up until then.
     pub fn read(&mut self, inputs: &Inputs) {
         self.crank.counts = self.crank.counts.saturating_add(inputs.wheel);
@@ -166,7 +186,7 @@ impl<const N: usize> Channel<N> {
             Feed::Thread(..) => true,
             Feed::PerTurn(lead) => {
                 self.crank.prepare(lead);
-                active.paced_at = AT_LIMIT;
+                active.paced_at = Overrides::AT_LIMIT;
                 false
             }
         };

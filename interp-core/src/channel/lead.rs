@@ -11,7 +11,7 @@
 
 use super::cruise::Cruise;
 use super::lookahead::smooth::{is_smoothed, most};
-use super::lookahead::{Lookahead, pace};
+use super::lookahead::{Lookahead, Overrides, pace};
 use super::margins::Margins;
 use super::{Channel, Current, State};
 use crate::block::{Motion, Speed};
@@ -28,9 +28,9 @@ pub(super) struct Lead {
     /// Length covered of its block.
     done: u64,
     speed: Speed,
-    /// Its block's speed under the override of `paced_at` percent.
+    /// Its block's speed under the overrides `paced_at`.
     pace: Speed,
-    paced_at: u16,
+    paced_at: Overrides,
     cruise: Cruise,
     /// Margins behind joints passed.
     behind: Margins,
@@ -39,7 +39,22 @@ pub(super) struct Lead {
 impl Lead {
     /// At rest where the tool is.
     pub(super) const fn new() -> Self {
-        Self { block: 0, done: 0, speed: 0, pace: 0, paced_at: 0, cruise: Cruise::new(), behind: Margins::EMPTY }
+        Self {
+            block: 0,
+            done: 0,
+            speed: 0,
+            pace: 0,
+            paced_at: Overrides::NONE,
+            cruise: Cruise::new(),
+            behind: Margins::EMPTY,
+        }
+    }
+}
+
+impl Lead {
+    /// The feeds are others: its pace is found anew.
+    pub(super) const fn repace(&mut self) {
+        self.paced_at = Overrides::AT_LIMIT;
     }
 }
 
@@ -110,10 +125,10 @@ impl<const N: usize> Channel<N> {
                 continue;
             };
             let left = motion.length.wrapping_sub(lead.done);
-            if lead.paced_at != self.feed_override {
-                (lead.pace, lead.paced_at) = (pace(motion, self.feed_override), self.feed_override);
+            if lead.paced_at != self.overrides {
+                (lead.pace, lead.paced_at) = (pace(motion, self.overrides), self.overrides);
             }
-            let target = if runs { lead.pace.min(lead.behind.cap()) } else { 0 };
+            let target = if runs { self.hands.cap(lead.pace, motion.limit).min(lead.behind.cap()) } else { 0 };
             if lead.speed == 0 {
                 if target == 0 {
                     break;
@@ -170,8 +185,8 @@ impl<const N: usize> Channel<N> {
                 if hard < most(next) {
                     behind.keep(hard, self.window.ticks());
                 }
-                let paced = pace(before, self.feed_override);
-                if paced < hard.min(pace(next, self.feed_override)) {
+                let paced = pace(before, self.overrides);
+                if paced < hard.min(pace(next, self.overrides)) {
                     behind.keep(paced, self.window.ticks());
                 }
                 behind
@@ -181,7 +196,7 @@ impl<const N: usize> Channel<N> {
         };
         lead.block = lead.block.wrapping_add(1);
         lead.done = 0;
-        (lead.pace, lead.paced_at) = (pace(next, self.feed_override), self.feed_override);
+        (lead.pace, lead.paced_at) = (pace(next, self.overrides), self.overrides);
         lead.cruise = Cruise::new();
         true
     }

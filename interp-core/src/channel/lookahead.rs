@@ -32,30 +32,47 @@ struct Planned {
 pub struct Lookahead<const N: usize> {
     /// How many at the back have not been planned.
     fresh: usize,
-    /// Percent of the programmed feed, planned with.
-    feed_override: u16,
+    /// Planned with.
+    overrides: Overrides,
     blocks: Deque<Planned, N>,
 }
 
-/// An override that stands for no feed at all but the limits: for drives that have a feed of their own.
-pub const AT_LIMIT: u16 = u16::MAX;
+/// What the operator makes of the program's speeds, percent.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Overrides {
+    /// Of feeds, 0 to 200.
+    pub feed: u16,
+    /// Of rapids, 0 to 100.
+    pub rapid: u16,
+}
 
-/// Speed of a motion under an override; that of one that follows the spindle is not known, and planned with its limit.
-pub fn pace(motion: &Motion, feed_override: u16) -> Speed {
+impl Overrides {
+    /// As programmed.
+    pub const NONE: Self = Self { feed: 100, rapid: 100 };
+
+    /// No feed at all but the limits: for drives that have a feed of their own.
+    pub const AT_LIMIT: Self = Self { feed: u16::MAX, rapid: 100 };
+}
+
+/// Speed of a motion under overrides; that of one that follows the spindle is not known, and planned with its limit.
+pub fn pace(motion: &Motion, overrides: Overrides) -> Speed {
+    let percent = |speed: Speed, percent: u16| {
+        let scaled = u64::from(speed).wrapping_mul(u64::from(percent)) / 100;
+        crate::math::to_u32(scaled).min(motion.limit)
+    };
     match motion.feed {
-        Feed::Rapid | Feed::PerTurn(_) | Feed::Thread(..) => motion.limit,
-        Feed::PerTick(_) if feed_override == AT_LIMIT => motion.limit,
-        Feed::PerTick(feed) => {
-            let scaled = u64::from(feed).wrapping_mul(u64::from(feed_override)) / 100;
-            crate::math::to_u32(scaled).min(motion.limit)
-        }
+        Feed::PerTurn(_) | Feed::Thread(..) => motion.limit,
+        Feed::Rapid if overrides.rapid == 100 => motion.limit,
+        Feed::Rapid => percent(motion.limit, overrides.rapid),
+        Feed::PerTick(_) if overrides.feed == Overrides::AT_LIMIT.feed => motion.limit,
+        Feed::PerTick(feed) => percent(feed, overrides.feed),
     }
 }
 
 impl<const N: usize> Lookahead<N> {
     /// None known.
     pub const fn new() -> Self {
-        Self { blocks: Deque::new(), fresh: 0, feed_override: 100 }
+        Self { blocks: Deque::new(), fresh: 0, overrides: Overrides::NONE }
     }
 
     /// Whether another block fits.
@@ -86,6 +103,16 @@ impl<const N: usize> Lookahead<N> {
         self.blocks.front().map(|next| (&next.block, next.entry))
     }
 
+    /// Sets the feed of all motions, but of rapids and threads.
+    pub fn set_feed(&mut self, feed: Feed) {
+        for planned in &mut self.blocks {
+            if let Work::Motion(motion) = &mut planned.block.work {
+                motion.set_feed(feed);
+            }
+        }
+        self.fresh = self.blocks.len();
+    }
+
     /// Takes the next block away.
     pub fn skip(&mut self) {
         let _ = self.blocks.pop_front();
@@ -112,12 +139,12 @@ impl<const N: usize> Lookahead<N> {
     }
 
     /// Plans the entry speeds anew as far as they change. `active` is the motion being executed.
-    pub fn plan(&mut self, active: Option<&Motion>, feed_override: u16) {
-        let all = feed_override != self.feed_override;
+    pub fn plan(&mut self, active: Option<&Motion>, overrides: Overrides) {
+        let all = overrides != self.overrides;
         if !all && self.fresh == 0 {
             return;
         }
-        self.feed_override = feed_override;
+        self.overrides = overrides;
         let known = self.blocks.len().saturating_sub(if all { self.blocks.len() } else { self.fresh });
         self.fresh = 0;
         let mut exit: Option<u64> = None;
@@ -133,7 +160,7 @@ impl<const N: usize> Lookahead<N> {
                 exit = None;
                 continue;
             };
-            let entry = linear_entry(before.as_ref(), motion, exit.unwrap_or(square(motion.stop)), feed_override);
+            let entry = linear_entry(before.as_ref(), motion, exit.unwrap_or(square(motion.stop)), overrides);
             if entry == planned.entry && here < known {
                 return;
             }
@@ -150,10 +177,10 @@ impl<const N: usize> Default for Lookahead<N> {
 }
 
 /// Squared speed at which `motion`, behind `before`, may be entered under the linear law so that its exit can be met.
-fn linear_entry(before: Option<&Motion>, motion: &Motion, exit: u64, feed_override: u16) -> u64 {
-    let own = pace(motion, feed_override);
+fn linear_entry(before: Option<&Motion>, motion: &Motion, exit: u64, overrides: Overrides) -> u64 {
+    let own = pace(motion, overrides);
     let most = match before {
-        Some(before) => motion.joint.min(own).min(pace(before, feed_override)),
+        Some(before) => motion.joint.min(own).min(pace(before, overrides)),
         None => motion.start.min(own),
     };
     motion.reachable(motion.length, exit).min(square(most))

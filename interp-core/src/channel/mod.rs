@@ -12,33 +12,40 @@ mod crank;
 mod cruise;
 pub mod follower;
 mod geared;
+pub mod hand;
+mod hands;
 mod lead;
 pub mod lookahead;
 mod margins;
 mod runner;
+mod single;
 pub mod superposed;
 mod trail;
 mod walk;
 mod wheeled;
 mod window;
 
-use crate::block::{Block, Motion, Output, Speed, Work};
+use crate::block::{Block, Feed, Motion, Output, Speed, Work};
 use crate::compensation::Compensation;
 use crate::compensation::pitch::PitchTable;
 use crate::config::{Machine, TICK_CLOCKS};
 use crate::drive::{Drive, Driven};
 use crate::governor::Advance;
+use crate::governor::square;
 use crate::math::root;
 use crate::shaper::Shaper;
 use crate::times::Stretch;
 use crate::train::Train;
 use crate::units::{Axis, Lattice};
 use crank::Crank;
+pub use crank::Pull;
 use cruise::Cruise;
+use hands::Hands;
 use lead::Lead;
 use lookahead::smooth::is_smoothed;
-use lookahead::{Lookahead, pace};
+use lookahead::{Lookahead, Overrides, pace};
 use runner::{Runner, Sink};
+use single::Single;
 use superposed::Superposed;
 use trail::Trail;
 use window::Window;
@@ -100,21 +107,21 @@ struct Active {
     runner: Runner,
     /// Length covered.
     done: u64,
-    /// Its speed under the override of `paced_at` percent.
+    /// Its speed under the overrides `paced_at`.
     pace: Speed,
-    paced_at: u16,
+    paced_at: Overrides,
     cruise: Cruise,
 }
 
 impl Active {
     /// At the start of `motion`.
     #[inline(always)]
-    fn new(motion: &Motion, feed_override: u16) -> Self {
+    fn new(motion: &Motion, overrides: Overrides) -> Self {
         Self {
             runner: Runner::new(&motion.curve, motion.length),
             done: 0,
-            pace: pace(motion, feed_override),
-            paced_at: feed_override,
+            pace: pace(motion, overrides),
+            paced_at: overrides,
             cruise: Cruise::new(),
             motion: *motion,
         }
@@ -150,8 +157,8 @@ pub struct Channel<const N: usize> {
     optional_stop: bool,
     /// The end block was taken: no more come.
     complete: bool,
-    /// Percent, 0 to 200.
-    feed_override: u16,
+    overrides: Overrides,
+    single: Single,
     line: u32,
     speed: Speed,
     /// Speed below which any axis may start or stop at once.
@@ -166,6 +173,7 @@ pub struct Channel<const N: usize> {
     compensation: Compensation,
     /// What drives other than time keep.
     crank: Crank,
+    hands: Hands,
     lead: Lead,
     window: Window,
     ahead: Lookahead<N>,
@@ -185,13 +193,15 @@ impl<const N: usize> Channel<N> {
             superposed: Superposed::new(),
             compensation: Compensation::new(&machine.compensation, position),
             position,
-            feed_override: 100,
+            overrides: Overrides::NONE,
+            single: Single::new(),
             optional_stop: false,
             complete: false,
             rest: machine.x.jump.min(machine.z.jump),
             starved: 0,
             waited: 0,
             crank: Crank::new(),
+            hands: Hands::new(machine),
             trail: Trail::new(),
             lead: Lead::new(),
             window: Window::new(machine.smoothing),
@@ -204,10 +214,12 @@ impl<const N: usize> Channel<N> {
             State::Idle | State::Ended => {
                 self.complete = false;
                 self.waited = 0;
+                self.single.pass_all();
                 self.state = State::Filling;
                 true
             }
             State::Holding | State::Stopped => {
+                self.pass_single();
                 self.state = State::Running;
                 true
             }
@@ -228,6 +240,7 @@ impl<const N: usize> Channel<N> {
     pub fn abandon(&mut self) {
         self.speed = 0;
         self.compensation.stop();
+        self.hands.abandon();
         self.forget();
     }
 
@@ -242,12 +255,48 @@ impl<const N: usize> Channel<N> {
 
     /// Sets the feed override, percent; more than 200 counts as 200.
     pub fn set_feed_override(&mut self, percent: u16) {
-        self.feed_override = percent.min(200);
+        self.overrides.feed = percent.min(200);
+    }
+
+    /// Sets the override of rapids, percent; more than 100 counts as 100.
+    pub fn set_rapid_override(&mut self, percent: u16) {
+        self.overrides.rapid = percent.min(100);
+    }
+
+    /// Percent of the largest speed that rapids are made at.
+    pub const fn rapid_override(&self) -> u16 {
+        self.overrides.rapid
     }
 
     /// Percent of the programmed feed.
     pub const fn feed_override(&self) -> u16 {
-        self.feed_override
+        self.overrides.feed
+    }
+
+    /// Says that no block comes after those that the source has now, so that none is waited for. To be called right after
+    /// [`start`](Self::start).
+    pub const fn close(&mut self) {
+        self.waited = FILL_PATIENCE;
+    }
+
+    /// Sets the feed of the motion that is being executed and of those to come; rapids and threads keep theirs.
+    pub fn set_feed(&mut self, feed: Feed) {
+        if let Current::Motion(active) = &mut self.current {
+            active.motion.set_feed(feed);
+            active.paced_at = Overrides::AT_LIMIT;
+        }
+        self.lead.repace();
+        self.ahead.set_feed(feed);
+    }
+
+    /// Says where the tool is. False, and nothing changes, while anything moves.
+    pub fn set_position(&mut self, position: Lattice) -> bool {
+        let idle = matches!(self.state, State::Idle | State::Ended) && self.hands.at_rest();
+        if idle {
+            self.position = position;
+            self.compensation.stand_at(position);
+        }
+        idle
     }
 
     /// Works with other figures from now on. False, and nothing changes, while a cycle runs.
@@ -255,6 +304,7 @@ impl<const N: usize> Channel<N> {
         let idle = matches!(self.state, State::Idle | State::Ended);
         if idle {
             self.shaper.configure(machine);
+            self.hands.configure(machine);
             self.compensation.configure(&machine.compensation, self.position);
             self.rest = machine.x.jump.min(machine.z.jump);
             self.window = Window::new(machine.smoothing);
@@ -320,15 +370,15 @@ impl<const N: usize> Channel<N> {
         let in_cycle = matches!(self.state, State::Running | State::Holding | State::Stopped | State::Resetting);
         self.take(source);
         let mut output = None;
-        if in_cycle {
-            if self.compensation.is_on() {
-                let (x, z) = self.compensation.tick(self.position);
-                self.superposed.begin(x, z);
+        let (x, z) = self.by_hand();
+        if in_cycle || !self.hands.at_rest() || x != 0 || z != 0 {
+            self.superpose(x, z);
+            if in_cycle {
+                output = self.run(out);
             }
-            output = self.run(out);
-            if self.superposed.is_live() {
-                self.superposed.end(&mut self.shaper, out);
-            }
+        }
+        if self.superposed.is_live() {
+            self.superposed.end(self.speed > 0, &mut self.shaper, out);
         }
         self.shaper.end_tick(out);
         if matches!(self.state, State::Filling) {
@@ -347,6 +397,20 @@ impl<const N: usize> Channel<N> {
         Report { state: self.state, in_cycle, output, line: self.line, speed: self.speed, driven }
     }
 
+    /// Adds so many pulses, and what the compensation gives, to the tick.
+    fn superpose(&mut self, x: i32, z: i32) {
+        let (mut x, mut z) = (x, z);
+        if self.compensation.is_on() {
+            let (position, offset) = (self.position, self.hands.offset());
+            let at = Lattice { x: position.x.wrapping_add(offset.x), z: position.z.wrapping_add(offset.z) };
+            let more = self.compensation.tick(at);
+            (x, z) = (x.wrapping_add(more.0), z.wrapping_add(more.1));
+        }
+        if x != 0 || z != 0 {
+            self.superposed.begin(x, z);
+        }
+    }
+
     /// Takes blocks and plans.
     fn take(&mut self, source: &mut impl FnMut() -> Option<Block>) {
         if matches!(self.state, State::Idle | State::Ended | State::Resetting) {
@@ -363,7 +427,7 @@ impl<const N: usize> Channel<N> {
             self.complete = matches!(block.work, Work::End);
             let late = self.window.ticks() > 0 && taken == 0 && self.is_late();
             self.ahead.push(block);
-            if late {
+            if late || self.single.is_on() {
                 self.ahead.stand_last();
             }
             taken = taken.wrapping_add(1);
@@ -373,7 +437,7 @@ impl<const N: usize> Channel<N> {
             Current::Motion(active) => Some(&active.motion),
             Current::Nothing | Current::Dwell(_) => None,
         };
-        let planned = self.crank.planned_override(self.feed_override);
+        let planned = self.crank.planned_with(self.overrides);
         match (self.window.ticks(), self.crank.drive) {
             (0, _) | (_, Drive::Spindle(_) | Drive::Wheel(_)) => self.ahead.plan(active, planned),
             (ticks, Drive::Time) => self.ahead.plan_smooth(active, planned, ticks),
@@ -386,6 +450,11 @@ impl<const N: usize> Channel<N> {
             return self.turn_crank(out);
         }
         if self.window.ticks() > 0 && self.follows() {
+            if self.window.is_drained() && matches!(self.current, Current::Nothing) && self.stops_single() {
+                self.state = State::Stopped;
+                self.speed = 0;
+                return None;
+            }
             self.follow(out);
             return None;
         }
@@ -439,6 +508,10 @@ impl<const N: usize> Channel<N> {
         if !moves && !self.settled() {
             return Next::Stands;
         }
+        if self.speed == 0 && self.stops_single() {
+            self.state = State::Stopped;
+            return Next::Goes;
+        }
         let Some((block, entry)) = self.ahead.next() else {
             self.state = State::Filling;
             return Next::Stands;
@@ -458,7 +531,7 @@ impl<const N: usize> Channel<N> {
                     // what braking could not shed of a lowered feed goes on; what the machine can't take does not
                     self.speed.min(motion.joint).min(motion.limit)
                 };
-                self.current = Current::Motion(Active::new(motion, self.feed_override));
+                self.current = Current::Motion(Active::new(motion, self.overrides));
                 self.trail.push(block.line, motion);
                 self.ahead.skip();
                 self.begun();
@@ -502,10 +575,10 @@ impl<const N: usize> Channel<N> {
     fn go(&mut self, clock: u32, out: &mut impl Train) -> Option<u32> {
         let holding = !matches!(self.state, State::Running);
         let Current::Motion(active) = &mut self.current else { return None };
-        if active.paced_at != self.feed_override {
-            active.repace(self.feed_override, &self.crank);
+        if active.paced_at != self.overrides {
+            active.repace(self.overrides, &self.crank);
         }
-        let target = if holding { 0 } else { active.pace };
+        let target = if holding { 0 } else { self.hands.cap(active.pace, active.motion.limit) };
         if self.speed == 0 {
             if target == 0 {
                 return None;
@@ -521,7 +594,11 @@ impl<const N: usize> Channel<N> {
         let advance = if steady && active.cruise.holds(target, left) {
             Advance { length: u64::from(target), clocks: TICK_CLOCKS, speed: target, done: false }
         } else {
-            let exit = self.trail.exit(&self.ahead, &active.motion);
+            let exit = if self.single.stops(&self.ahead, self.line) {
+                square(active.motion.stop)
+            } else {
+                self.trail.exit(&self.ahead, &active.motion)
+            };
             let budget = TICK_CLOCKS.wrapping_sub(clock);
             let advance = active.motion.advance(self.speed, left, exit, target, budget);
             if steady && advance.speed == target && !advance.done {
@@ -537,7 +614,8 @@ impl<const N: usize> Channel<N> {
         active.runner.advance(active.done, stretch, &mut sink);
         if advance.done {
             active.runner.finish(clock.wrapping_add(advance.clocks), &mut sink);
-            let goes_on = self.trail.is_behind() || self.ahead.continues();
+            let stops = self.single.stops(&self.ahead, self.line) && self.speed <= active.motion.stop;
+            let goes_on = (self.trail.is_behind() || self.ahead.continues()) && !stops;
             self.current = Current::Nothing;
             if !goes_on {
                 self.speed = 0;

@@ -1,4 +1,4 @@
-//! Pulses that are added to the program's: compensation now, handwheels later.
+//! Pulses that are added to the program's: those of the compensation and of the hands.
 //!
 //! The contract: [`begin`](Superposed::begin) tells, before a tick's steps are made, *these signed pulses of X and Z are
 //! to be added in this tick*. They are spread evenly over it and come among the program's steps in the order of time,
@@ -73,12 +73,12 @@ impl Added {
     }
 
     /// A tick is over: what must not wait longer.
-    fn patience(&mut self) -> i8 {
+    fn patience(&mut self, patience: u8) -> i8 {
         if self.owed == 0 {
             return 0;
         }
         self.waited = self.waited.saturating_add(1);
-        if self.waited < PATIENCE {
+        if self.waited < patience {
             return 0;
         }
         self.waited = 0;
@@ -140,11 +140,12 @@ impl Superposed {
         self.offer(clock, step, step, shaper, out);
     }
 
-    /// Makes what the tick still owes.
+    /// Makes what the tick still owes. Where the program does not move nothing of its own can cancel a pulse, and none waits.
     #[cold]
-    pub fn end(&mut self, shaper: &mut Shaper, out: &mut impl Train) {
+    pub fn end(&mut self, moves: bool, shaper: &mut Shaper, out: &mut impl Train) {
         self.until(TICK_CLOCKS, shaper, out);
-        let (x, z) = (self.x.patience(), self.z.patience());
+        let patience = if moves { PATIENCE } else { 0 };
+        let (x, z) = (self.x.patience(patience), self.z.patience(patience));
         self.make(LATE, [x, z], Step { x: 0, z: 0 }, shaper, out);
         self.live = self.x.owed != 0 || self.z.owed != 0;
     }

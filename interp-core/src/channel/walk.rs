@@ -6,6 +6,7 @@
 //! blocks that it leads through, each with the part of the tick that its length has in the whole. Backward it leads over
 //! joints into the motions of the [trail](super::trail), and ends exactly at its start.
 
+use super::lookahead::Overrides;
 use super::runner::{Runner, Sink, share};
 use super::{Active, Channel, Current};
 use crate::block::{Motion, Work};
@@ -25,9 +26,9 @@ impl Active {
 
     /// At the end of `motion`.
     #[inline(never)]
-    pub(super) fn at_end(motion: &Motion, feed_override: u16) -> Self {
+    pub(super) fn at_end(motion: &Motion, overrides: Overrides) -> Self {
         let runner = Runner::at_end(&motion.curve, motion.length);
-        Self { runner, done: motion.length, ..Self::new(motion, feed_override) }
+        Self { runner, done: motion.length, ..Self::new(motion, overrides) }
     }
 }
 
@@ -101,7 +102,7 @@ impl<const N: usize> Channel<N> {
         }
         self.line = block.line;
         self.trail.push(block.line, motion);
-        self.current = Current::Motion(Active::new(motion, self.feed_override));
+        self.current = Current::Motion(Active::new(motion, self.overrides));
         self.ahead.skip();
         self.begun();
         thread == in_thread
@@ -113,7 +114,7 @@ impl<const N: usize> Channel<N> {
         if motion.feed.is_thread() && !self.crank.in_thread {
             return false;
         }
-        self.current = Current::Motion(Active::at_end(motion, self.feed_override));
+        self.current = Current::Motion(Active::at_end(motion, self.overrides));
         self.line = line;
         true
     }
@@ -121,7 +122,7 @@ impl<const N: usize> Channel<N> {
     /// Enters the trail's present motion from its start.
     pub(super) fn enter_again(&mut self) -> bool {
         let Some((line, motion)) = self.trail.here() else { return false };
-        self.current = Current::Motion(Active::new(motion, self.feed_override));
+        self.current = Current::Motion(Active::new(motion, self.overrides));
         self.line = line;
         true
     }

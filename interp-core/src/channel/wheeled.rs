@@ -5,10 +5,12 @@
 //! the joints on the way, going back as well as forward. Where the wheel turns round, or asks for less than braking needs,
 //! the path brakes to a stand first and then goes the other way. Where the path ends, what is left is dropped and told.
 //!
+//! A [pull](super::Pull) asks for the end of the path, at a speed of its own: a joystick's.
+//!
 //! It sets off with the speed of one tick's acceleration, not with the jump that motors allow: a wheel is turned gently.
 
-use super::{Channel, Current, State};
-use crate::block::{Motion, Output};
+use super::{Channel, Current, Pull, State};
+use crate::block::{Motion, Output, Speed};
 use crate::config::TICK_CLOCKS;
 use crate::drive::wheel::Click;
 use crate::governor::square;
@@ -26,7 +28,13 @@ impl<const N: usize> Channel<N> {
             Current::Nothing | Current::Dwell(_) => 0,
         };
         let back = self.crank.back;
-        self.crank.driven.dropped = if matches!(self.state, State::Running) {
+        if self.speed == 0 && matches!(self.crank.pull, Some(Pull { speed: 0, .. })) {
+            self.crank.pull = None;
+        }
+        self.crank.driven.dropped = if let (Some(pull), State::Running) = (self.crank.pull, self.state) {
+            self.crank.wheel.ask(far(pull));
+            i32::from(counts)
+        } else if matches!(self.state, State::Running) {
             self.crank.wheel.turn(click, counts, signed(braking.cast_signed(), back), travel)
         } else {
             // a hold brakes, whatever the wheel asks for
@@ -49,7 +57,8 @@ impl<const N: usize> Channel<N> {
     /// Begins to move where the wheel asks for it and the path leads there.
     fn set_off(&mut self, click: Click) -> bool {
         let to_go = self.crank.wheel.to_go();
-        if to_go == 0 || !matches!(self.state, State::Running) {
+        let stands = self.crank.pull.is_some_and(|pull| pull.speed == 0);
+        if to_go == 0 || stands || !matches!(self.state, State::Running) {
             return false;
         }
         self.crank.back = to_go < 0;
@@ -61,8 +70,9 @@ impl<const N: usize> Channel<N> {
         }
         let Current::Motion(active) = &self.current else { return false };
         let motion = &active.motion;
+        let pace = self.crank.pull.map_or(Speed::MAX, |pull| pull.speed);
         let most = root(motion.reachable(to_go.unsigned_abs(), 0));
-        self.speed = motion.accel.min(motion.limit).min(most).max(1);
+        self.speed = motion.accel.min(motion.limit).min(most).min(pace).max(1);
         true
     }
 
@@ -77,6 +87,8 @@ impl<const N: usize> Channel<N> {
 
     fn drop_rest(&mut self, click: Click) {
         let dropped = self.crank.wheel.stop(click);
+        // what pulls asks for the end: nothing is lost there
+        let dropped = if self.crank.pull.is_some() { 0 } else { dropped };
         self.crank.driven.dropped = self.crank.driven.dropped.saturating_add(dropped);
     }
 
@@ -103,8 +115,9 @@ impl<const N: usize> Channel<N> {
         } else if let Some(next) = self.neighbour(back) {
             exit = exit.min(next.reachable(asked.wrapping_sub(room), 0));
         }
-        let stops = asked > 0 && motion.reachable(left, exit) >= square(self.speed);
-        let target = if stops { motion.limit } else { 0 };
+        let pace = self.crank.pull.map_or(Speed::MAX, |pull| pull.speed).min(motion.limit);
+        let stops = asked > 0 && pace > 0 && motion.reachable(left, exit) >= square(self.speed);
+        let target = if stops { self.hands.cap(pace, motion.limit) } else { 0 };
         if !stops {
             left = room;
             exit = if back { self.trail.exit_back() } else { self.trail.exit(&self.ahead, motion) };
@@ -139,5 +152,15 @@ impl<const N: usize> Channel<N> {
         let Current::Motion(active) = &self.current else { return };
         let joint = if back { joint } else { active.motion.joint };
         self.speed = self.speed.min(joint).min(active.motion.limit);
+    }
+}
+
+/// The end of the path, as a distance that no path has: nm with 12 fraction bits.
+const fn far(pull: Pull) -> i64 {
+    const FAR: i64 = 1 << 50;
+    match pull {
+        Pull { speed: 0, .. } => 0,
+        Pull { back: true, .. } => -FAR,
+        Pull { back: false, .. } => FAR,
     }
 }

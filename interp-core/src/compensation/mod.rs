@@ -276,6 +276,12 @@ impl Compensation {
         }
     }
 
+    /// The machine stands at `position`, which counts as right.
+    pub fn stand_at(&mut self, position: Lattice) {
+        self.at = position;
+        self.stand(position);
+    }
+
     fn stand(&mut self, position: Lattice) {
         self.x.stand(position.x);
         self.z.stand(position.z);

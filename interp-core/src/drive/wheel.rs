@@ -82,15 +82,42 @@ impl Wheel {
         to_i32(dropped)
     }
 
+    /// Whether nothing is asked for.
+    pub const fn is_at_rest(&self) -> bool {
+        self.to_go == 0 && self.waiting == 0
+    }
+
+    /// Asks for a distance outright, in the place of all asked for.
+    pub const fn ask(&mut self, by: i64) {
+        self.to_go = by;
+        self.waiting = 0;
+    }
+
+    /// Drops what would lead out of the room (at most 0, at least 0). Returns the counts dropped, begun ones too.
+    pub fn limit(&mut self, click: Click, (least, most): (i64, i64)) -> i32 {
+        let all = self.to_go.saturating_add(self.waiting);
+        let kept = all.max(least).min(most);
+        if kept == all {
+            return 0;
+        }
+        self.ask(kept);
+        dropped(all.saturating_sub(kept), click)
+    }
+
     /// Drops what is left where the path ends. Returns the counts dropped, begun ones too.
     pub fn stop(&mut self, click: Click) -> i32 {
         let all = self.to_go.saturating_add(self.waiting);
         *self = Self::new();
-        let count = click.count().unsigned_abs();
-        let up = all.unsigned_abs().saturating_add(count.saturating_sub(1));
-        let whole = up.checked_div(count).unwrap_or(0).cast_signed();
-        to_i32(if all < 0 { whole.wrapping_neg() } else { whole })
+        dropped(all, click)
     }
+}
+
+/// Counts that a length is worth, begun ones too.
+fn dropped(length: i64, click: Click) -> i32 {
+    let count = click.count().unsigned_abs();
+    let up = length.unsigned_abs().saturating_add(count.saturating_sub(1));
+    let whole = up.checked_div(count).unwrap_or(0).cast_signed();
+    to_i32(if length < 0 { whole.wrapping_neg() } else { whole })
 }
 
 #[cfg(test)]

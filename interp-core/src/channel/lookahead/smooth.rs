@@ -1,6 +1,6 @@
 //! Look-ahead for the lead of an S law: with margins around the joints, and from rest to rest.
 
-use super::{Lookahead, as_motion, linear_entry, pace};
+use super::{Lookahead, Overrides, as_motion, linear_entry, pace};
 use crate::block::{Feed, Motion, Speed};
 use crate::channel::margins::Margins;
 use crate::governor::square;
@@ -29,6 +29,16 @@ impl<const N: usize> Lookahead<N> {
         self.motion(index).is_none() || self.blocks.get(index).is_some_and(|planned| planned.stands)
     }
 
+    /// Each line is begun from standstill, after the rest of `line`.
+    pub(in crate::channel) fn stand_lines(&mut self, line: u32) {
+        let mut before = line;
+        for planned in &mut self.blocks {
+            planned.stands |= planned.block.line != before;
+            before = planned.block.line;
+        }
+        self.fresh = self.blocks.len();
+    }
+
     /// The block pushed last is begun from standstill: it came too late for anything else.
     pub(in crate::channel) fn stand_last(&mut self) {
         if let Some(last) = self.blocks.back_mut() {
@@ -50,19 +60,19 @@ impl<const N: usize> Lookahead<N> {
     /// What no override changes, the speeds of joints and the limits of the machine, has margins of its own at any
     /// override: so braking as hard as allowed meets them, whatever the operator does. Those of the programmed feeds come
     /// besides; where an override makes them suddenly lower they are approached gradually.
-    pub(in crate::channel) fn plan_smooth(&mut self, active: Option<&Motion>, feed_override: u16, ticks: u8) {
-        let all = feed_override != self.feed_override;
+    pub(in crate::channel) fn plan_smooth(&mut self, active: Option<&Motion>, overrides: Overrides, ticks: u8) {
+        let all = overrides != self.overrides;
         if !all && self.fresh == 0 {
             return;
         }
-        self.feed_override = feed_override;
+        self.overrides = overrides;
         let known = if all { 0 } else { self.blocks.len().saturating_sub(self.fresh) };
         self.fresh = 0;
         let mut index = self.blocks.len();
         while let Some(here) = index.checked_sub(1) {
             index = here;
             let Some(motion) = self.motion(here) else {
-                self.plan_paced(here, active, feed_override);
+                self.plan_paced(here, active, overrides);
                 continue;
             };
             let before = match here.checked_sub(1) {
@@ -75,11 +85,11 @@ impl<const N: usize> Lookahead<N> {
             let mut entry = motion.reachable(way.room, way.exit).min(square(way.cap));
             match before {
                 Some(before) if !self.stands(here) => {
-                    let (hard, own) = (motion.joint.min(motion.limit), pace(motion, feed_override));
+                    let (hard, own) = (motion.joint.min(motion.limit), pace(motion, overrides));
                     if hard < most(before) {
                         margins.keep(hard, ticks);
                     }
-                    let paced = pace(before, feed_override);
+                    let paced = pace(before, overrides);
                     if own < hard.min(paced) {
                         margins.keep(own, ticks);
                     }
@@ -96,7 +106,7 @@ impl<const N: usize> Lookahead<N> {
     }
 
     /// Plans block `here` where it is a motion that a spindle paces.
-    fn plan_paced(&mut self, here: usize, active: Option<&Motion>, feed_override: u16) {
+    fn plan_paced(&mut self, here: usize, active: Option<&Motion>, overrides: Overrides) {
         let paced =
             |index: usize| self.blocks.get(index).and_then(|planned| Some((planned.entry, as_motion(&planned.block)?)));
         let Some((_, motion)) = paced(here) else { return };
@@ -107,7 +117,7 @@ impl<const N: usize> Lookahead<N> {
         let before = before.filter(|before| !is_smoothed(before));
         let next = paced(here.wrapping_add(1)).filter(|(_, next)| !is_smoothed(next));
         let exit = next.map_or(square(motion.stop), |(entry, _)| entry);
-        let entry = linear_entry(before, motion, exit, feed_override);
+        let entry = linear_entry(before, motion, exit, overrides);
         if let Some(planned) = self.blocks.get_mut(here) {
             planned.entry = entry;
         }
