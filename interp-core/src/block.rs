@@ -109,6 +109,18 @@ impl Curve {
             Self::Conic(piece) => piece.end(),
         }
     }
+
+    /// The least and the greatest coordinates, X then Z, pulses from the start; a pulse more where an arc passes an extreme.
+    pub fn extent(&self) -> ((i32, i32), (i32, i32)) {
+        let (x, z) = self.end();
+        let ends = ((x.min(0), z.min(0)), (x.max(0), z.max(0)));
+        match self {
+            Self::Arc(arc) => arc.extent(),
+            Self::Line(..) => ends,
+            #[cfg(feature = "methods")]
+            Self::ClassicLine(..) | Self::Conic(_) => ends,
+        }
+    }
 }
 
 /// One motion with its limits.
@@ -135,9 +147,9 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Sets the feed, but of a rapid or a thread.
+    /// Sets the feed, but of a thread.
     pub const fn set_feed(&mut self, feed: Feed) {
-        if matches!(self.feed, Feed::PerTick(_) | Feed::PerTurn(_)) {
+        if !matches!(self.feed, Feed::Thread(..)) {
             self.feed = feed;
         }
     }

@@ -93,6 +93,14 @@ fn walk(case: &Case) -> Option<(f64, u32)> {
     );
     let turned = length / radius;
     assert!(radius < 2.0 * coarse || (turned - swept).abs() < 1e-6, "{label}: swept {swept}, length says {turned}");
+    // the extent holds all steps, and each of its sides is met to a pulse or two, and what a coarse pulse steps over
+    let over = (coarse * coarse / (2.0 * radius * px.min(pz))) as i32;
+    let ((x0, z0), (x1, z1)) = interp_core::block::Curve::Arc(arc).extent();
+    let least = visited.iter().fold((0, 0), |m: (i32, i32), p| (m.0.min(p.0), m.1.min(p.1)));
+    let most = visited.iter().fold((0, 0), |m: (i32, i32), p| (m.0.max(p.0), m.1.max(p.1)));
+    for (bound, met) in [(-x0, -least.0), (-z0, -least.1), (x1, most.0), (z1, most.1)] {
+        assert!((met..=met + 2 + over).contains(&bound), "{label}: extent {bound}, met {met}");
+    }
     let count = visited.len() as u32 - 1;
     visited.pop();
     while let Some(step) = walker.previous_step() {

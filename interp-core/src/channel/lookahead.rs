@@ -103,7 +103,7 @@ impl<const N: usize> Lookahead<N> {
         self.blocks.front().map(|next| (&next.block, next.entry))
     }
 
-    /// Sets the feed of all motions, but of rapids and threads.
+    /// Sets the feed of all motions, but of threads.
     pub fn set_feed(&mut self, feed: Feed) {
         for planned in &mut self.blocks {
             if let Work::Motion(motion) = &mut planned.block.work {

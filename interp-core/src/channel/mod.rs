@@ -104,6 +104,8 @@ impl Report {
 #[derive(Clone, Debug)]
 struct Active {
     motion: Motion,
+    /// Where it begins.
+    from: Lattice,
     runner: Runner,
     /// Length covered.
     done: u64,
@@ -116,8 +118,9 @@ struct Active {
 impl Active {
     /// At the start of `motion`.
     #[inline(always)]
-    fn new(motion: &Motion, overrides: Overrides) -> Self {
+    fn new(motion: &Motion, overrides: Overrides, from: Lattice) -> Self {
         Self {
+            from,
             runner: Runner::new(&motion.curve, motion.length),
             done: 0,
             pace: pace(motion, overrides),
@@ -157,6 +160,8 @@ pub struct Channel<const N: usize> {
     optional_stop: bool,
     /// The end block was taken: no more come.
     complete: bool,
+    /// No more come once the source has none.
+    closed: bool,
     overrides: Overrides,
     single: Single,
     line: u32,
@@ -197,6 +202,7 @@ impl<const N: usize> Channel<N> {
             single: Single::new(),
             optional_stop: false,
             complete: false,
+            closed: false,
             rest: machine.x.jump.min(machine.z.jump),
             starved: 0,
             waited: 0,
@@ -213,6 +219,7 @@ impl<const N: usize> Channel<N> {
         match self.state {
             State::Idle | State::Ended => {
                 self.complete = false;
+                self.closed = false;
                 self.waited = 0;
                 self.single.pass_all();
                 self.state = State::Filling;
@@ -273,13 +280,13 @@ impl<const N: usize> Channel<N> {
         self.overrides.feed
     }
 
-    /// Says that no block comes after those that the source has now, so that none is waited for. To be called right after
-    /// [`start`](Self::start).
+    /// Says, right after [`start`](Self::start), that no more blocks come once the source has none: the path ends in the last
+    /// one, and no end block has to follow.
     pub const fn close(&mut self) {
-        self.waited = FILL_PATIENCE;
+        self.closed = true;
     }
 
-    /// Sets the feed of the motion that is being executed and of those to come; rapids and threads keep theirs.
+    /// Sets the feed of the motion that is being executed and of those to come; threads keep theirs.
     pub fn set_feed(&mut self, feed: Feed) {
         if let Current::Motion(active) = &mut self.current {
             active.motion.set_feed(feed);
@@ -347,6 +354,39 @@ impl<const N: usize> Channel<N> {
     /// Where the last pulse planned leads.
     pub const fn position(&self) -> Lattice {
         self.position
+    }
+
+    /// How far the path would go if it braked now, at most: nm with 12 fraction bits.
+    pub fn braking(&self) -> u64 {
+        let Current::Motion(active) = &self.current else { return 0 };
+        let speed = u64::from(self.speed);
+        let brakes = square(self.speed).checked_div(u64::from(active.motion.accel.max(1)) << 1).unwrap_or(0);
+        // two ticks are planned already; an S law runs on by its window
+        brakes.saturating_add(speed.saturating_mul(u64::from(self.window.ticks()).saturating_add(2)))
+    }
+
+    /// The pulses, least and greatest, that a motion leads through from where the program is: the present one as a whole,
+    /// then the next. `None` where there is none.
+    pub fn extents(&self) -> [Option<(Lattice, Lattice)>; 2] {
+        let next = self.ahead.next().and_then(|(block, _)| lookahead::as_motion(block));
+        let (here, end) = match &self.current {
+            Current::Motion(active) => (Some(&active.motion), active.from),
+            Current::Nothing | Current::Dwell(_) => (None, self.position),
+        };
+        let (mut from, mut extents) = (end, [None; 2]);
+        for (extent, motion) in extents.iter_mut().zip([here, next]) {
+            let Some(motion) = motion else { continue };
+            let (least, most) = motion.curve.extent();
+            let add = |(x, z): (i32, i32)| Lattice { x: from.x.wrapping_add(x), z: from.z.wrapping_add(z) };
+            *extent = Some((add(least), add(most)));
+            from = add(motion.curve.end());
+        }
+        extents
+    }
+
+    /// Length of the present motion that is left, nm with 12 fraction bits.
+    pub const fn to_go(&self) -> u64 {
+        self.room(false)
     }
 
     /// Whether the look-ahead has room for blocks that may still come.
@@ -419,7 +459,8 @@ impl<const N: usize> Channel<N> {
         let mut taken = 0_usize;
         while !self.complete && self.ahead.has_room() && taken < FILL_PER_TICK {
             let Some(block) = source() else {
-                if !matches!(self.state, State::Filling) {
+                self.complete = self.closed;
+                if !self.closed && !matches!(self.state, State::Filling) {
                     self.starved = self.starved.saturating_add(1);
                 }
                 break;
@@ -531,7 +572,7 @@ impl<const N: usize> Channel<N> {
                     // what braking could not shed of a lowered feed goes on; what the machine can't take does not
                     self.speed.min(motion.joint).min(motion.limit)
                 };
-                self.current = Current::Motion(Active::new(motion, self.overrides));
+                self.current = Current::Motion(Active::new(motion, self.overrides, self.position));
                 self.trail.push(block.line, motion);
                 self.ahead.skip();
                 self.begun();

@@ -13,6 +13,7 @@ use crate::block::{Motion, Work};
 use crate::config::{FRACTION_BITS, TICK_CLOCKS};
 use crate::times::Stretch;
 use crate::train::Train;
+use crate::units::Lattice;
 
 /// What is added to a length before its steps are made: the timeline rounds down, by up to 2 nm where a curve is 2 m
 /// long, and a wheel stops on lattice lines, whose steps are to be made then.
@@ -26,9 +27,11 @@ impl Active {
 
     /// At the end of `motion`.
     #[inline(never)]
-    pub(super) fn at_end(motion: &Motion, overrides: Overrides) -> Self {
+    pub(super) fn at_end(motion: &Motion, overrides: Overrides, at: Lattice) -> Self {
+        let end = motion.curve.end();
+        let from = Lattice { x: at.x.wrapping_sub(end.0), z: at.z.wrapping_sub(end.1) };
         let runner = Runner::at_end(&motion.curve, motion.length);
-        Self { runner, done: motion.length, ..Self::new(motion, overrides) }
+        Self { runner, done: motion.length, ..Self::new(motion, overrides, from) }
     }
 }
 
@@ -102,7 +105,7 @@ impl<const N: usize> Channel<N> {
         }
         self.line = block.line;
         self.trail.push(block.line, motion);
-        self.current = Current::Motion(Active::new(motion, self.overrides));
+        self.current = Current::Motion(Active::new(motion, self.overrides, self.position));
         self.ahead.skip();
         self.begun();
         thread == in_thread
@@ -114,7 +117,7 @@ impl<const N: usize> Channel<N> {
         if motion.feed.is_thread() && !self.crank.in_thread {
             return false;
         }
-        self.current = Current::Motion(Active::at_end(motion, self.overrides));
+        self.current = Current::Motion(Active::at_end(motion, self.overrides, self.position));
         self.line = line;
         true
     }
@@ -122,7 +125,7 @@ impl<const N: usize> Channel<N> {
     /// Enters the trail's present motion from its start.
     pub(super) fn enter_again(&mut self) -> bool {
         let Some((line, motion)) = self.trail.here() else { return false };
-        self.current = Current::Motion(Active::new(motion, self.overrides));
+        self.current = Current::Motion(Active::new(motion, self.overrides, self.position));
         self.line = line;
         true
     }

@@ -75,6 +75,33 @@ pub struct Timeline {
 }
 
 impl Arc {
+    /// The least and the greatest coordinates, X then Z, pulses from the start; a pulse more at an extreme that it passes.
+    pub fn extent(&self) -> ((i32, i32), (i32, i32)) {
+        let (x, z) = self.end;
+        let (mut least, mut most) = ((x.min(0), z.min(0)), (x.max(0), z.max(0)));
+        #[expect(clippy::cast_possible_truncation, reason = "a curve is within 2^30 pulses")]
+        let pulses = |fine: i64| (fine >> 16) as i32;
+        let Timeline { centre: [cx, cz], radius_pulses: [rx, rz], .. } = self.timeline;
+        let (rx, rz) = (rx.cast_signed(), rz.cast_signed());
+        let mut octant = self.octant;
+        for _ in 1..self.pieces {
+            let next = match self.sense {
+                Sense::CounterClockwise => octant.wrapping_add(1) & 7,
+                Sense::Clockwise => octant.wrapping_sub(1) & 7,
+            };
+            let border = if matches!(self.sense, Sense::CounterClockwise) { next } else { octant };
+            match border {
+                0 => most.1 = most.1.max(pulses(cz.wrapping_add(rz)).wrapping_add(1)),
+                2 => most.0 = most.0.max(pulses(cx.wrapping_add(rx)).wrapping_add(1)),
+                4 => least.1 = least.1.min(pulses(cz.wrapping_sub(rz)).wrapping_sub(1)),
+                6 => least.0 = least.0.min(pulses(cx.wrapping_sub(rx)).wrapping_sub(1)),
+                _ => {}
+            }
+            octant = next;
+        }
+        (least, most)
+    }
+
     /// Length of the walked arc, nm with 12 fraction bits.
     pub const fn length(&self) -> u64 {
         self.timeline.length
