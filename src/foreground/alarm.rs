@@ -9,6 +9,7 @@
 //! was planned.
 
 use core::fmt;
+use interp_core::units::Axis;
 
 /// Counters of what must not happen: one that rises is an alarm.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -49,11 +50,61 @@ pub enum Alarm {
     Late,
     /// The watchdog restarted the chip.
     Watchdog,
+    /// A limit switch of the cross slide was run into.
+    LimitSwitchX,
+    /// A limit switch of the carriage.
+    LimitSwitchZ,
+    /// A home switch was not found, or did not open.
+    Homing,
+    /// The slide is not where the cross slide's motor should have led it.
+    FollowingX,
+    /// Of the carriage.
+    FollowingZ,
 }
 
 impl Alarm {
     /// All alarms.
-    pub const ALL: [Self; 5] = [Self::Emergency, Self::Underrun, Self::Overrun, Self::Late, Self::Watchdog];
+    pub const ALL: [Self; 10] = [
+        Self::Emergency,
+        Self::Underrun,
+        Self::Overrun,
+        Self::Late,
+        Self::Watchdog,
+        Self::LimitSwitchX,
+        Self::LimitSwitchZ,
+        Self::Homing,
+        Self::FollowingX,
+        Self::FollowingZ,
+    ];
+
+    /// The alarm of an axis that has run into a limit switch.
+    pub const fn limit_switch(axis: Axis) -> Self {
+        match axis {
+            Axis::X => Self::LimitSwitchX,
+            Axis::Z => Self::LimitSwitchZ,
+        }
+    }
+
+    /// The alarm of an axis that does not follow.
+    pub const fn following(axis: Axis) -> Self {
+        match axis {
+            Axis::X => Self::FollowingX,
+            Axis::Z => Self::FollowingZ,
+        }
+    }
+
+    /// Whether what moves is braked, and not stopped at once.
+    pub(super) const fn brakes(self) -> bool {
+        !matches!(self, Self::Emergency)
+    }
+
+    /// Whether pulses may have been lost for certain, whatever the speed was.
+    pub(super) const fn loses_pulses(self) -> bool {
+        match self {
+            Self::Emergency | Self::LimitSwitchX | Self::LimitSwitchZ | Self::Homing => false,
+            Self::Underrun | Self::Overrun | Self::Late | Self::Watchdog | Self::FollowingX | Self::FollowingZ => true,
+        }
+    }
 
     /// The number behind `ALARM:`. 10 is grblHAL's; those from 200 on are this project's.
     pub const fn number(self) -> u8 {
@@ -63,6 +114,11 @@ impl Alarm {
             Self::Overrun => 201,
             Self::Late => 202,
             Self::Watchdog => 203,
+            Self::LimitSwitchX => 204,
+            Self::LimitSwitchZ => 205,
+            Self::Homing => 206,
+            Self::FollowingX => 207,
+            Self::FollowingZ => 208,
         }
     }
 
@@ -80,6 +136,11 @@ impl fmt::Display for Alarm {
             Self::Overrun => "the pulse train overflowed",
             Self::Late => "a pulse was late",
             Self::Watchdog => "the watchdog restarted the controller",
+            Self::LimitSwitchX => "a limit switch of X was met",
+            Self::LimitSwitchZ => "a limit switch of Z was met",
+            Self::Homing => "the home switch was not found",
+            Self::FollowingX => "X is not where it should be",
+            Self::FollowingZ => "Z is not where it should be",
         })
     }
 }

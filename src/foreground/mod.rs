@@ -4,22 +4,39 @@
 //! what is not there at a tick's start is taken at the next.
 
 pub mod alarm;
+pub mod command;
+pub mod contour;
+mod desk;
 pub mod heartbeat;
+mod homing;
+pub mod inputs;
+pub mod mode;
+mod operate;
 pub mod outputs;
+mod power;
 pub mod published;
+pub mod refusal;
 pub mod rehearsal;
+mod requests;
+pub mod settings;
+pub mod shown;
 pub mod train_queue;
+mod wheels;
 
-use interp_core::block::Block;
+use interp_core::block::{Block, Feed, Output, Speed, Work};
 use interp_core::channel::{Channel, Report, State};
 use interp_core::compensation::pitch::PitchTable;
 use interp_core::config::Machine;
-use interp_core::train::Train;
+use interp_core::train::{Event, Train};
 use interp_core::units::{Axis, Lattice};
 
 use crate::queue::Consumer;
 use alarm::{Alarm, Faults};
+pub use command::Command;
+use desk::Desk;
+use inputs::Inputs;
 use outputs::Outputs;
+use refusal::Refusal;
 
 /// Blocks that a lathe looks ahead. The same on every board and on the desktop, since the pulses depend on it.
 pub const LOOKAHEAD: usize = 64;
@@ -29,25 +46,6 @@ pub const BLOCK_QUEUE: usize = 16;
 
 /// Capacity of the queue of commands.
 pub const COMMAND_QUEUE: usize = 8;
-
-/// What the background, a key or the link asks of the foreground.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Command {
-    /// Cycle start; goes on after a hold or a programmed stop.
-    Start,
-    /// Feed hold.
-    Hold,
-    /// Brake, then forget all blocks, those in the queue included. The spindle stops at once.
-    Reset,
-    /// Leave an alarm: the operator has seen to it. Without effect while the tool moves or its cause lasts.
-    Unlock,
-    /// Feed override, percent, 0 to 200.
-    FeedOverride(u16),
-    /// Optional stops stop.
-    OptionalStop(bool),
-    /// Other figures of the machine. Without effect while a cycle runs: the background asks only when all is idle.
-    Configure(Machine),
-}
 
 /// The foreground of one lathe.
 #[repr(C)]
@@ -60,10 +58,11 @@ pub struct Foreground<'q> {
     /// The emergency input is open.
     open: bool,
     channel: Channel<LOOKAHEAD>,
+    desk: Desk,
 }
 
 impl<'q> Foreground<'q> {
-    /// A lathe that stands at `position` and takes from these queues.
+    /// A lathe that stands at `position` and takes from these queues. The position counts as known.
     pub fn new(
         machine: &Machine,
         position: Lattice,
@@ -72,7 +71,7 @@ impl<'q> Foreground<'q> {
     ) -> Self {
         let channel = Channel::new(machine, position);
         let (outputs, faults) = (Outputs::REST, Faults::default());
-        Self { channel, blocks, commands, outputs, alarm: None, faults, open: false }
+        Self { channel, blocks, commands, outputs, alarm: None, faults, open: false, desk: Desk::new(machine) }
     }
 
     /// Makes one tick of train.
@@ -83,10 +82,19 @@ impl<'q> Foreground<'q> {
         if self.alarm.is_some() {
             self.forget();
         }
-        let blocks = &mut self.blocks;
-        let report = self.channel.tick(&mut || blocks.dequeue(), out);
-        self.outputs.follow(report.output, report.state, self.alarm);
+        self.operate();
+        let report = if self.desk.locked.is_some() { self.run(&mut Locked(out)) } else { self.run(out) };
+        self.oversee(&report);
+        self.outputs.follow(report.output, report.state, self.alarm, self.desk.motors);
         report
+    }
+
+    /// A tick of the channel: it takes blocks of the machine's own, else the program's.
+    fn run(&mut self, out: &mut impl Train) -> Report {
+        let (programs, dry) = (self.desk.takes_programs(), self.desk.dry());
+        let (own, blocks) = (&mut self.desk.own, &mut self.blocks);
+        let mut source = || own.next().or_else(|| if programs { dried(blocks.dequeue(), dry) } else { None });
+        self.channel.tick(&mut source, out)
     }
 
     /// Looks at what the board has counted so far and whether the emergency input is, or has been, open; to be called
@@ -102,6 +110,16 @@ impl<'q> Foreground<'q> {
         }
     }
 
+    /// Takes the readings of a tick, to be called before it. Counts of wheels that no tick has taken add up.
+    pub const fn read(&mut self, inputs: &Inputs) {
+        let before = self.desk.inputs;
+        self.desk.inputs = *inputs;
+        let now = &mut self.desk.inputs;
+        now.wheels.x = now.wheels.x.saturating_add(before.wheels.x);
+        now.wheels.z = now.wheels.z.saturating_add(before.wheels.z);
+        now.contour = now.contour.saturating_add(before.contour);
+    }
+
     /// Raises an alarm. An earlier one stays, unless this one is an emergency stop.
     pub fn raise(&mut self, alarm: Alarm) {
         let emergency = matches!(alarm, Alarm::Emergency);
@@ -109,40 +127,43 @@ impl<'q> Foreground<'q> {
             return;
         }
         self.alarm = Some(alarm);
+        self.lose_place(alarm);
         if emergency {
             self.channel.abandon();
         } else {
             self.channel.reset();
         }
+        self.stand_down();
         self.forget();
     }
 
     /// Forgets the blocks that wait.
     fn forget(&mut self) {
         while self.blocks.dequeue().is_some() {}
+        self.desk.own.clear();
+    }
+
+    /// Obeys a command at once, or notes why it is [refused](Self::refused); the next tick is the first that shows it.
+    pub fn obey(&mut self, command: Command) {
+        if let Err(refusal) = self.request(command) {
+            self.desk.refuse(refusal);
+        }
     }
 
     /// Obeys a command at once; the next tick is the first that shows it.
-    pub fn obey(&mut self, command: Command) {
-        match command {
-            // a start with nothing to start and a hold of nothing are requests without effect, and harmless
-            Command::Start if self.alarm.is_some() => {}
-            Command::Start => drop(self.channel.start()),
-            Command::Hold => drop(self.channel.hold()),
-            Command::Reset => {
-                self.channel.reset();
-                self.forget();
-                self.outputs.spindle = false;
-            }
-            Command::Unlock => {
-                if !self.open && matches!(self.channel.state(), State::Idle | State::Ended) {
-                    self.alarm = None;
-                }
-            }
-            Command::FeedOverride(percent) => self.channel.set_feed_override(percent),
-            Command::OptionalStop(on) => self.channel.set_optional_stop(on),
-            Command::Configure(machine) => drop(self.channel.configure(&machine)),
+    ///
+    /// # Errors
+    /// Why it is refused: nothing has changed then.
+    pub fn request(&mut self, command: Command) -> Result<(), Refusal> {
+        match mode::refusal(&command, &self.situation()) {
+            Some(refusal) => Err(refusal),
+            None => self.carry_out(command),
         }
+    }
+
+    /// What was refused since this was last asked, the latest, and how many there were.
+    pub const fn refused(&mut self) -> (Option<Refusal>, u32) {
+        self.desk.take_refusal()
     }
 
     /// Clocks that pulses of a row stay high.
@@ -161,7 +182,7 @@ impl<'q> Foreground<'q> {
         self.channel.state()
     }
 
-    /// Why the machine is locked. The position is unverified then.
+    /// Why the machine is locked.
     pub const fn alarm(&self) -> Option<Alarm> {
         self.alarm
     }
@@ -181,14 +202,30 @@ impl<'q> Foreground<'q> {
         self.channel.set_temperature(temperature);
     }
 
+    /// Sets counts a turn of the spindle's encoder, 4 a line; `None` for no encoder. False, and nothing changes, while a
+    /// cycle runs or where the number can't be one.
+    pub fn set_encoder(&mut self, counts: Option<u32>) -> bool {
+        self.channel.set_encoder(counts)
+    }
+
     /// Pulses that the motor of an axis is due beyond the program since its position was made known.
     pub const fn compensation(&self, axis: Axis) -> i32 {
         self.channel.compensation(axis)
     }
 
-    /// Where the last pulse planned leads.
+    /// Where the last pulse planned leads: the program's place, and what the operator has added to it.
     pub const fn position(&self) -> Lattice {
+        self.desk.physical(self.channel.position(), self.channel.offset())
+    }
+
+    /// Where the program is.
+    pub const fn programmed(&self) -> Lattice {
         self.channel.position()
+    }
+
+    /// By how much the handwheels have led the tool off the program.
+    pub const fn offset(&self) -> Lattice {
+        self.channel.offset()
     }
 
     /// Percent of the programmed feed.
@@ -199,6 +236,26 @@ impl<'q> Foreground<'q> {
     /// How often the look-ahead wanted a block and the queue was empty.
     pub const fn starved(&self) -> u32 {
         self.channel.starved()
+    }
+}
+
+/// A block as it is run: dry, with another feed and without outputs of the spindle.
+fn dried(block: Option<Block>, dry: Option<Speed>) -> Option<Block> {
+    let (Some(mut block), Some(speed)) = (block, dry) else { return block };
+    match &mut block.work {
+        Work::Motion(motion) if !matches!(motion.feed, Feed::Rapid) => motion.feed = Feed::PerTick(speed),
+        Work::Output(Output::SpindleForward | Output::SpindleReverse) => block.work = Work::Dwell(0),
+        _ => {}
+    }
+    Some(block)
+}
+
+/// Machine lock: the train without its steps.
+struct Locked<'o, O>(&'o mut O);
+
+impl<O: Train> Train for Locked<'_, O> {
+    fn put(&mut self, event: Event) {
+        self.0.put(Event::new(event.levels().without_steps(), event.interval()));
     }
 }
 
@@ -244,6 +301,9 @@ mod tests {
         let report = foreground.tick(&mut |_: interp_core::train::Event| {});
         assert_eq!((report.state, block_in.is_empty()), (State::Idle, true));
         foreground.obey(Command::Unlock);
+        // the watchdog's restart may have cost pulses
+        assert_eq!(foreground.request(Command::Start), Err(Refusal::Unverified));
+        foreground.obey(Command::ConfirmPosition);
         foreground.obey(Command::Start);
         assert_eq!((foreground.alarm(), foreground.state()), (None, State::Filling));
     }

@@ -19,13 +19,13 @@ impl Outputs {
 
     /// After a tick in which the program set `output` and that left the channel in `state`: the end of a program and an
     /// alarm switch the spindle off, an emergency stop the motors, too.
-    pub(super) const fn follow(&mut self, output: Option<Output>, state: State, alarm: Option<Alarm>) {
+    pub(super) const fn follow(&mut self, output: Option<Output>, state: State, alarm: Option<Alarm>, motors: bool) {
         match output {
             Some(Output::SpindleForward) => self.spindle = true,
             Some(Output::SpindleReverse | Output::SpindleStop) => self.spindle = false,
             Some(Output::SpindleSpeed(_) | Output::Tool(..)) | None => {}
         }
         self.spindle &= !matches!(state, State::Ended) && alarm.is_none();
-        self.motors = !matches!(alarm, Some(Alarm::Emergency));
+        self.motors = motors && !matches!(alarm, Some(Alarm::Emergency));
     }
 }

@@ -229,7 +229,7 @@ impl Observer for Watch {
         match command {
             Command::FeedOverride(percent) => self.percent = u32::from(percent),
             Command::Hold | Command::Reset => return self.checker.override_percent(0),
-            Command::Start | Command::Unlock | Command::OptionalStop(_) | Command::Configure(_) => {}
+            _ => {}
         }
         self.checker.override_percent(self.percent);
     }

@@ -8,7 +8,7 @@ use crate::curve::proportion::Proportion;
 use crate::drive::follower::Follower;
 use crate::drive::gearing::{Gearing, Lead};
 use crate::drive::spindle::{COUNT, Spindle};
-use crate::drive::wheel::Wheel;
+use crate::drive::wheel::{Click, Wheel};
 use crate::drive::{Drive, DriveRefusal, Driven, Inputs};
 use crate::math::to_u32;
 use crate::train::Train;
@@ -134,6 +134,24 @@ impl<const N: usize> Channel<N> {
     /// The spindle as it is tracked.
     pub const fn spindle(&self) -> Option<&Spindle> {
         self.crank.spindle.as_ref()
+    }
+
+    /// What a detent of the contour wheel is worth from now on, where the wheel is the drive.
+    pub const fn set_click(&mut self, click: Click) {
+        if let Drive::Wheel(present) = &mut self.crank.drive {
+            *present = click;
+        }
+    }
+
+    /// Whether a thread is being cut.
+    pub const fn in_thread(&self) -> bool {
+        self.crank.in_thread
+    }
+
+    /// Path a tick that a lead makes of the spindle's present speed, either sense; 0 without a spindle.
+    pub fn per_turn(&mut self, lead: Lead) -> Speed {
+        self.crank.prepare(lead);
+        self.crank.per_turn()
     }
 
     /// The drive.

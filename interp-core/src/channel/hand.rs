@@ -50,6 +50,9 @@ impl Hand {
     /// Takes the counts of a handwheel, 4 a detent. Returns those dropped: what would run on by more than braking, a click
     /// and a tick, and what would leave the room.
     pub fn turn(&mut self, click: Click, counts: i16, bounds: Bounds, room: Room) -> i32 {
+        if self.stopping && counts == 0 {
+            return 0;
+        }
         let advance = self.follower.advance();
         let speed = advance.unsigned_abs();
         // v (v + a) / 2a: braking by a every tick

@@ -351,7 +351,17 @@ impl<const N: usize> Channel<N> {
         self.state
     }
 
-    /// Where the last pulse planned leads.
+    /// Line of the block being executed, 0 for none.
+    pub const fn line(&self) -> u32 {
+        self.line
+    }
+
+    /// Speed along the path.
+    pub const fn speed(&self) -> Speed {
+        self.speed
+    }
+
+    /// Where the program's last pulse planned leads.
     pub const fn position(&self) -> Lattice {
         self.position
     }

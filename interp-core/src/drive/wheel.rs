@@ -22,6 +22,9 @@ const SPREAD: u32 = 3;
 pub struct Click(u32);
 
 impl Click {
+    /// 1, 10 and 100 um: x1, x10 and x100.
+    pub const DECADES: [Self; 3] = [Self(1_000), Self(10_000), Self(100_000)];
+
     /// Of 1 nm to 10 mm.
     pub const fn from_nm(nm: u32) -> Option<Self> {
         if nm == 0 || nm > 10_000_000 { None } else { Some(Self(nm)) }

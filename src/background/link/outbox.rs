@@ -33,6 +33,8 @@ pub(super) struct Outbox {
     pub(super) machine: Option<Machine>,
     /// Leave the alarm.
     pub(super) unlock: bool,
+    /// The position is right: who unlocks says so.
+    pub(super) confirm: bool,
     pub(super) percent: Option<u16>,
     pub(super) optional_stop: Option<bool>,
     /// Hold or start.
@@ -52,9 +54,11 @@ impl Outbox {
                 Command::Reset => self.reset = false,
                 Command::Configure(_) => self.machine = None,
                 Command::FeedOverride(_) => self.percent = None,
-                Command::Unlock => self.unlock = false,
+                Command::Unlock => (self.unlock, self.confirm) = (false, true),
+                Command::ConfirmPosition => self.confirm = false,
                 Command::OptionalStop(_) => self.optional_stop = None,
-                Command::Start | Command::Hold => self.flow = None,
+                // a start or a hold: the link sends nothing else
+                _ => self.flow = None,
             }
         }
         any
@@ -71,6 +75,9 @@ impl Outbox {
         }
         if self.unlock {
             return Some(Command::Unlock);
+        }
+        if self.confirm {
+            return Some(Command::ConfirmPosition);
         }
         if let Some(percent) = self.percent {
             return Some(Command::FeedOverride(percent));

@@ -13,7 +13,7 @@ use feature_editor::codes::{Action, Feed, Format, Item};
 use handcnc::background::compile::Compiler;
 use host_tests::{parameters, run};
 use interp_core::block::{Block, Feed as Pace, Motion, Work};
-use interp_core::channel::lookahead::pace;
+use interp_core::channel::lookahead::{Overrides, pace};
 use interp_core::units::{Point, Sense};
 use proptest::prelude::*;
 use std::fmt::Write;
@@ -172,7 +172,7 @@ fn a_blended_zigzag_takes_less_time_and_no_joint_slows_it() {
         let blocks = blocks(&zigzag(""), &[("corner_um", corner)]);
         joints(&blocks)
             .iter()
-            .filter(|(before, behind)| behind.joint < pace(before, 100).min(pace(behind, 100)))
+            .filter(|(before, behind)| behind.joint < pace(before, Overrides::NONE).min(pace(behind, Overrides::NONE)))
             .count()
     };
     assert_eq!(slowed("0"), 22);

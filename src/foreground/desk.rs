@@ -1,0 +1,163 @@
+//! What the operator has set: mode, switches, coordinates; and what has become of what he asked for.
+
+use super::contour::{Contour, Own};
+use super::homing;
+use super::inputs::{Inputs, PerAxis};
+use super::mode::Mode;
+use super::power::Power;
+use super::refusal::Refusal;
+use super::settings::Settings;
+use super::wheels::Wheels;
+use interp_core::block::{Feed, Speed};
+use interp_core::config::Machine;
+use interp_core::drive::Trouble;
+use interp_core::units::{Axis, Lattice};
+
+/// The operator's side of a lathe.
+#[derive(Clone, Debug)]
+pub(super) struct Desk {
+    pub(super) mode: Mode,
+    pub(super) machine: Machine,
+    pub(super) settings: Settings,
+    pub(super) inputs: Inputs,
+    /// Blocks of the machine's own, and whether such a path is in the channel.
+    pub(super) own: Own,
+    pub(super) own_path: bool,
+    pub(super) contour: Option<Contour>,
+    pub(super) wheels: Wheels,
+    pub(super) power: Power,
+    pub(super) homing: homing::Phase,
+    pub(super) dry_run: bool,
+    /// Machine lock: where the axes stand meanwhile, and their offset.
+    pub(super) locked: Option<(Lattice, Lattice)>,
+    /// The motors' drivers are to be on.
+    pub(super) motors: bool,
+    /// Where the axes are, is known.
+    pub(super) verified: PerAxis<bool>,
+    /// From the program's coordinates to the machine's, pulses.
+    pub(super) datum: Lattice,
+    /// Offsets that were kept, and wear that was booked; both are part of where the axes are.
+    pub(super) kept: Lattice,
+    pub(super) wear: Lattice,
+    /// Cycle start was given and waits for the handwheels to come to rest.
+    pub(super) starting: bool,
+    /// Spindle speed by hand, thousandths of a turn a minute, signed.
+    pub(super) spindle: i32,
+    pub(super) spindle_override: u16,
+    /// Line of the block in which a program was interrupted, 0 for none.
+    pub(super) interrupted: u32,
+    /// Following errors, nm.
+    pub(super) following: PerAxis<i32>,
+    /// What the drive could not do in the last tick.
+    pub(super) trouble: Option<Trouble>,
+    /// Offsets are on their way back to zero.
+    pub(super) nulling: bool,
+    /// Where the axes were at the end of the last tick, in the machine's own coordinates.
+    pub(super) place: Lattice,
+    /// Ticks since power-on.
+    pub(super) ticks: u32,
+    refused: Option<Refusal>,
+    refusals: u32,
+}
+
+impl Desk {
+    pub(super) const fn new(machine: &Machine) -> Self {
+        const NOWHERE: Lattice = Lattice { x: 0, z: 0 };
+        Self {
+            mode: Mode::Automatic,
+            machine: *machine,
+            settings: Settings::NONE,
+            inputs: Inputs::NONE,
+            own: Own::new(),
+            own_path: false,
+            contour: None,
+            wheels: Wheels::new(),
+            power: Power::new(Feed::PerTick(1 << 12)),
+            homing: homing::Phase::Rest,
+            dry_run: false,
+            locked: None,
+            motors: true,
+            verified: PerAxis { x: true, z: true },
+            datum: NOWHERE,
+            kept: NOWHERE,
+            wear: NOWHERE,
+            starting: false,
+            spindle: 0,
+            spindle_override: 100,
+            interrupted: 0,
+            following: PerAxis { x: 0, z: 0 },
+            trouble: None,
+            nulling: false,
+            place: NOWHERE,
+            ticks: 0,
+            refused: None,
+            refusals: 0,
+        }
+    }
+
+    /// Notes a refusal.
+    pub(super) const fn refuse(&mut self, refusal: Refusal) {
+        self.refused = Some(refusal);
+        self.refusals = self.refusals.wrapping_add(1);
+    }
+
+    pub(super) const fn take_refusal(&mut self) -> (Option<Refusal>, u32) {
+        let count = self.refusals;
+        self.refusals = 0;
+        (self.refused.take(), count)
+    }
+
+    /// Feed of a dry run, in one.
+    pub(super) const fn dry(&self) -> Option<Speed> {
+        if self.dry_run { Some(self.settings.dry) } else { None }
+    }
+
+    /// Whether the channel takes the program's blocks: not while a path of the machine's own is in it.
+    pub(super) const fn takes_programs(&self) -> bool {
+        self.mode.runs_programs() && !self.own_path
+    }
+
+    /// Where the axes are, of the program's place and the offset.
+    pub(super) const fn physical(&self, programmed: Lattice, offset: Lattice) -> Lattice {
+        let (kept, wear) = (self.kept, self.wear);
+        Lattice {
+            x: programmed.x.wrapping_add(offset.x).wrapping_add(kept.x).wrapping_add(wear.x),
+            z: programmed.z.wrapping_add(offset.z).wrapping_add(kept.z).wrapping_add(wear.z),
+        }
+    }
+
+    /// The same in the machine's own coordinates.
+    pub(super) const fn own_place(&self, programmed: Lattice, offset: Lattice) -> Lattice {
+        let at = self.physical(programmed, offset);
+        Lattice { x: at.x.wrapping_add(self.datum.x), z: at.z.wrapping_add(self.datum.z) }
+    }
+
+    /// How many pulses an axis that is at `at`, in the machine's own coordinates, may go to minus and to plus.
+    pub(super) fn room(&self, axis: Axis, at: i32) -> (i32, i32) {
+        let ends = self.inputs.ends.of(axis);
+        let (mut least, mut most) = (i32::MIN >> 2, i32::MAX >> 2);
+        if *self.verified.of(axis) {
+            let limits = self.settings.axes.of(axis).limits;
+            // leaving a limit that was passed is free, going on is not
+            least = limits.0.saturating_sub(at).min(0);
+            most = limits.1.saturating_sub(at).max(0);
+        }
+        (if ends.minus { 0 } else { least }, if ends.plus { 0 } else { most })
+    }
+}
+
+/// The part of an axis.
+pub(super) const fn part(at: Lattice, axis: Axis) -> i32 {
+    match axis {
+        Axis::X => at.x,
+        Axis::Z => at.z,
+    }
+}
+
+/// The part of an axis.
+pub(super) const fn part_mut(at: &mut Lattice, axis: Axis) -> &mut i32 {
+    match axis {
+        Axis::X => &mut at.x,
+        Axis::Z => &mut at.z,
+    }
+}

@@ -1,0 +1,255 @@
+//! A tick of the operator's side: readings become motion, and what the channel does is overseen.
+
+use super::desk::part;
+use super::inputs::{AXES, Ends, Joystick, PerAxis};
+use super::mode::Mode;
+use super::power::Phase;
+use super::refusal::Refusal;
+use super::{Alarm, Foreground};
+use interp_core::block::Pace;
+use interp_core::channel::{Report, State};
+use interp_core::drive::{self, Drive};
+use interp_core::units::{Axis, Lattice};
+
+impl Foreground<'_> {
+    /// Before the channel's tick.
+    pub(super) fn operate(&mut self) {
+        if let Some(reading) = self.desk.inputs.spindle.take() {
+            self.channel.read(&drive::Inputs { spindle: Some(reading), wheel: 0 });
+        }
+        self.turn_wheels();
+        self.home_on();
+        self.feed_on();
+        self.turn_contour();
+        self.start_when_still();
+    }
+
+    /// The handwheels of X and Z.
+    fn turn_wheels(&mut self) {
+        let counts = self.desk.inputs.wheels;
+        self.desk.inputs.wheels = PerAxis { x: 0, z: 0 };
+        let folds = matches!(self.desk.mode, Mode::Handwheel)
+            || matches!(self.desk.mode, Mode::Power) && !matches!(self.desk.power.phase, Phase::Contour);
+        self.channel.fold_hands(folds, folds);
+        if counts == (PerAxis { x: 0, z: 0 }) && self.channel.hands_rest() {
+            // its rate falls meanwhile
+            for axis in AXES {
+                self.desk.wheels.click(axis, 0);
+            }
+            return;
+        }
+        let place = self.desk.own_place(self.channel.position(), self.channel.offset());
+        for axis in AXES {
+            let counts = *counts.of(axis);
+            let click = self.desk.wheels.click(axis, counts);
+            if !self.may_turn(axis) {
+                self.desk.wheels.drop(axis, i32::from(counts));
+                if counts != 0 && !self.desk.settings.wheels {
+                    self.desk.refuse(Refusal::WheelsOff);
+                }
+                continue;
+            }
+            // what moves by itself is not a wheel's: a turn takes it over
+            if counts == 0 && self.desk.nulling {
+                continue;
+            }
+            self.desk.nulling = false;
+            let (mut least, mut most) = self.desk.room(axis, part(place, axis));
+            if !folds {
+                let (bounds, offset) = (self.desk.settings.axes.of(axis).bounds, part(self.channel.offset(), axis));
+                least = least.max(bounds.0.saturating_sub(offset).min(0));
+                most = most.min(bounds.1.saturating_sub(offset).max(0));
+            }
+            let dropped = self.channel.turn_hand(axis, click, counts, (least, most));
+            self.desk.wheels.drop(axis, dropped);
+            let (at_minus, at_plus) = (least == 0 && dropped < 0, most == 0 && dropped > 0);
+            if at_minus || at_plus {
+                self.desk.refuse(Refusal::Limit(axis, at_plus));
+            }
+        }
+    }
+
+    /// Whether an axis's handwheel moves it.
+    fn may_turn(&self, axis: Axis) -> bool {
+        let desk = &self.desk;
+        let free = match desk.mode {
+            Mode::Handwheel => true,
+            Mode::Homing => false,
+            Mode::Power => matches!(desk.power.phase, Phase::Contour) || !desk.power.drives(axis),
+            // beside a thread the spindle leads Z
+            Mode::Automatic | Mode::ManualData | Mode::Linked | Mode::Retrace => {
+                matches!(axis, Axis::X) || !self.channel.in_thread()
+            }
+        };
+        free && self.alarm.is_none() && desk.motors && desk.settings.wheels && desk.homing.axis().is_none()
+    }
+
+    /// The contour wheel.
+    fn turn_contour(&mut self) {
+        let counts = core::mem::take(&mut self.desk.inputs.contour);
+        let linked = matches!(self.desk.mode, Mode::Linked | Mode::Retrace);
+        let may = linked && self.alarm.is_none() && self.desk.motors && !self.desk.inputs.guard;
+        if counts == 0 {
+            return;
+        }
+        let drop = |desk: &mut super::Desk| {
+            desk.wheels.dropped_contour = desk.wheels.dropped_contour.saturating_add(i32::from(counts));
+        };
+        if !may {
+            drop(&mut self.desk);
+            return;
+        }
+        let idle = matches!(self.channel.state(), State::Idle | State::Ended);
+        if idle && matches!(self.desk.mode, Mode::Linked) && !self.begin_contour() {
+            drop(&mut self.desk);
+            return;
+        }
+        self.channel.set_click(self.desk.wheels.contour());
+        self.channel.read(&drive::Inputs { spindle: None, wheel: counts });
+    }
+
+    /// Puts the contour into the channel where none is in it, from where the tool stands. False without one.
+    pub(super) fn begin_contour(&mut self) -> bool {
+        let Some(contour) = self.desk.contour else {
+            self.desk.refuse(Refusal::NoContour);
+            return false;
+        };
+        let from = self.channel.position();
+        let drive = Drive::Wheel(self.desk.wheels.contour());
+        let desk = &mut self.desk;
+        if !desk.own.contour(&desk.machine, from, &contour) || !self.within_limits() {
+            self.desk.own.clear();
+            self.desk.refuse(Refusal::BadContour);
+            return false;
+        }
+        let _ = self.channel.set_drive(drive);
+        self.begin_own()
+    }
+
+    /// Begins the path of the machine's own that was built.
+    pub(super) fn begin_own(&mut self) -> bool {
+        self.desk.own_path = self.channel.start();
+        if self.desk.own_path {
+            self.channel.close();
+        } else {
+            self.desk.own.clear();
+        }
+        self.desk.own_path
+    }
+
+    /// Begins a straight path to a place. False where it is there already.
+    pub(super) fn begin_line(&mut self, to: Lattice, pace: Pace) -> bool {
+        let from = self.channel.position();
+        let _ = self.channel.set_drive(Drive::Time);
+        self.desk.own.line(&self.desk.machine, from, to, pace) && self.begin_own()
+    }
+
+    /// Whether the path that was built stays inside the soft limits.
+    fn within_limits(&self) -> bool {
+        let mut at = self.desk.own_place(self.channel.position(), self.channel.offset());
+        self.desk.own.extents().all(|(least, most, end)| {
+            let inside = AXES.into_iter().all(|axis| {
+                let limits = self.desk.settings.axes.of(axis).limits;
+                let from = part(at, axis);
+                !self.desk.verified.of(axis)
+                    || from.saturating_add(part(least, axis)) >= limits.0
+                        && from.saturating_add(part(most, axis)) <= limits.1
+            });
+            at = Lattice { x: at.x.wrapping_add(end.x), z: at.z.wrapping_add(end.z) };
+            inside
+        })
+    }
+
+    /// Cycle start waits until the handwheels rest: they have all of the acceleration while the program stands.
+    pub(super) fn start_when_still(&mut self) {
+        if self.desk.starting && self.channel.hands_rest() {
+            self.desk.starting = false;
+            let _ = self.channel.start();
+        }
+    }
+
+    /// After the channel's tick.
+    pub(super) fn oversee(&mut self, report: &Report) {
+        let dropped = &mut self.desk.wheels.dropped_contour;
+        *dropped = dropped.saturating_add(report.driven.dropped);
+        self.desk.trouble = report.driven.trouble;
+        if self.desk.nulling && self.channel.hands_rest() {
+            self.desk.nulling = false;
+        }
+        if self.desk.own_path && matches!(report.state, State::Idle | State::Ended) {
+            self.desk.own_path = false;
+        }
+        self.watch_switches();
+        self.watch_limits();
+        self.desk.place = self.desk.own_place(self.channel.position(), self.channel.offset());
+        self.desk.ticks = self.desk.ticks.wrapping_add(1);
+    }
+
+    /// The guard holds what runs; a limit switch that an axis runs into is an alarm.
+    fn watch_switches(&mut self) {
+        let runs = matches!(self.channel.state(), State::Running | State::Filling);
+        if self.desk.inputs.guard && runs && matches!(self.channel.drive(), Drive::Time) {
+            let _ = self.channel.hold();
+            self.desk.refuse(Refusal::GuardOpen);
+        }
+        if matches!(self.desk.mode, Mode::Homing) {
+            return;
+        }
+        let at = self.desk.own_place(self.channel.position(), self.channel.offset());
+        for axis in AXES {
+            let (moved, Ends { plus, minus }) =
+                (part(at, axis).wrapping_sub(part(self.desk.place, axis)), *self.desk.inputs.ends.of(axis));
+            if plus && moved > 0 || minus && moved < 0 {
+                self.raise(Alarm::limit_switch(axis));
+            }
+        }
+    }
+
+    /// Holds a path that would lead an axis past its soft limit.
+    fn watch_limits(&mut self) {
+        if !matches!(self.channel.state(), State::Running) || self.channel.speed() == 0 {
+            return;
+        }
+        let at = self.desk.own_place(self.channel.position(), self.channel.offset());
+        let programmed = self.channel.position();
+        for axis in AXES {
+            if !self.desk.verified.of(axis) {
+                continue;
+            }
+            let (least, most) = self.desk.settings.axes.of(axis).limits;
+            let shift = part(at, axis).wrapping_sub(part(programmed, axis));
+            let moved = part(at, axis).wrapping_sub(part(self.desk.place, axis));
+            let near = self.braking_pulses(axis);
+            let (mut plus, mut minus) = (false, false);
+            for (low, high) in self.channel.extents().into_iter().flatten() {
+                minus |= part(low, axis).saturating_add(shift) < least;
+                plus |= part(high, axis).saturating_add(shift) > most;
+            }
+            let to_plus = plus && moved >= 0 && most.saturating_sub(part(at, axis)) <= near;
+            let to_minus = minus && moved <= 0 && part(at, axis).saturating_sub(least) <= near;
+            if to_plus || to_minus {
+                let _ = self.channel.hold();
+                self.desk.refuse(Refusal::Limit(axis, to_plus));
+                return;
+            }
+        }
+    }
+
+    /// Pulses that an axis goes at most while the path brakes.
+    fn braking_pulses(&self, axis: Axis) -> i32 {
+        let pulse = match axis {
+            Axis::X => self.desk.machine.x.pulse,
+            Axis::Z => self.desk.machine.z.pulse,
+        };
+        let nm = self.channel.braking() >> interp_core::config::FRACTION_BITS;
+        let pulses = nm.saturating_mul(u64::from(pulse.denominator())).checked_div(u64::from(pulse.numerator()));
+        i32::try_from(pulses.unwrap_or(0)).unwrap_or(i32::MAX >> 2).saturating_add(2)
+    }
+
+    /// Where a joystick that is latched leads, if anywhere.
+    pub(super) fn pushed(&self) -> Joystick {
+        let joystick = self.desk.inputs.joystick;
+        let free = self.alarm.is_none() && self.desk.motors && !self.desk.inputs.guard;
+        if free && joystick != self.desk.power.done { joystick } else { Joystick::Off }
+    }
+}

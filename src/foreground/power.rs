@@ -1,0 +1,242 @@
+//! Power feed: the joystick moves a slide to a stop, or both along the contour; there and back, as often as asked for.
+//!
+//! A feed along an axis is a straight path of the machine's own, from where the tool stands to the shoulder stop, else to the
+//! soft limit: so feed, override, feed a turn of the spindle and an exact end are those of any path. Letting go of the
+//! joystick brakes and forgets it. Along the contour the joystick [pulls](interp_core::channel::Pull).
+
+use super::Foreground;
+use super::desk::{part, part_mut};
+use super::inputs::{Joystick, PerAxis};
+use super::mode::Mode;
+use super::refusal::Refusal;
+use interp_core::block::{Feed, Pace, Speed};
+use interp_core::channel::{Pull, State};
+use interp_core::units::{Axis, Lattice};
+
+/// What power feed is doing.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(super) enum Phase {
+    /// Nothing.
+    Rest,
+    /// Along an axis.
+    Feed { axis: Axis, plus: bool },
+    /// Along the contour.
+    Contour,
+    /// Back to where it began.
+    Return,
+    /// Brakes.
+    Brake,
+}
+
+/// Power feed.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Power {
+    pub(super) phase: Phase,
+    /// The feed asked for.
+    pub(super) feed: Feed,
+    /// Shoulder stops, in the program's pulses.
+    pub(super) stops: PerAxis<Option<i32>>,
+    /// Where the last feed began.
+    pub(super) began: Option<Lattice>,
+    /// Feeds that are still to be made there and back, the present one included.
+    pub(super) repeats: u16,
+    /// The feed runs at rapid, else at this feed.
+    pub(super) rapid: bool,
+    pub(super) runs_at: Feed,
+    /// The joystick's last position that has been dealt with: it is not begun again where it has led to its end.
+    pub(super) done: Joystick,
+}
+
+impl Power {
+    pub(super) const fn new(feed: Feed) -> Self {
+        Self {
+            phase: Phase::Rest,
+            feed,
+            stops: PerAxis { x: None, z: None },
+            began: None,
+            repeats: 0,
+            rapid: false,
+            runs_at: feed,
+            done: Joystick::Off,
+        }
+    }
+
+    /// Forgets what it was doing; stops and feed stay.
+    pub(super) const fn cancel(&mut self, joystick: Joystick) {
+        self.phase = Phase::Rest;
+        self.repeats = 0;
+        self.done = joystick;
+    }
+
+    /// Where a feed along an axis from `from` ends: at the stop, where it lies that way, else at the limit.
+    pub(super) fn end(&self, axis: Axis, plus: bool, from: i32, limit: i32) -> i32 {
+        let stop = self.stops.of(axis).filter(|&stop| if plus { stop >= from } else { stop <= from });
+        match stop {
+            Some(stop) if plus => stop.min(limit),
+            Some(stop) => stop.max(limit),
+            None => limit,
+        }
+    }
+
+    /// Whether an axis is moved by power now.
+    pub(super) fn drives(&self, axis: Axis) -> bool {
+        match self.phase {
+            Phase::Rest => false,
+            Phase::Feed { axis: driven, .. } => driven == axis,
+            Phase::Contour | Phase::Return | Phase::Brake => true,
+        }
+    }
+}
+
+impl Foreground<'_> {
+    /// A tick of power feed; and of the joystick along the contour in linked feed.
+    pub(super) fn feed_on(&mut self) {
+        if matches!(self.desk.inputs.joystick, Joystick::Off) {
+            self.desk.power.done = Joystick::Off;
+        }
+        match self.desk.mode {
+            Mode::Power => {}
+            Mode::Linked | Mode::Retrace => return self.pull_on(),
+            Mode::Handwheel | Mode::Automatic | Mode::ManualData | Mode::Homing => return,
+        }
+        let pushed = self.pushed();
+        match self.desk.power.phase {
+            Phase::Rest => match pushed {
+                Joystick::Off => {}
+                Joystick::Axis(axis, plus) => self.begin_feed(axis, plus),
+                Joystick::Path(_) => self.pull_on(),
+            },
+            Phase::Feed { axis, plus } if self.desk.own_path => {
+                if pushed == Joystick::Axis(axis, plus) {
+                    self.feed_at();
+                } else {
+                    self.brake();
+                }
+            }
+            Phase::Feed { axis, plus } => self.arrived(axis, plus),
+            Phase::Contour => self.pull_on(),
+            Phase::Return if self.desk.own_path => {
+                // with the joystick let go, or a push of it that asked for no return, it brakes
+                let repeats = self.desk.power.repeats > 0;
+                if repeats && matches!(pushed, Joystick::Off) || self.desk.inputs.guard {
+                    self.brake();
+                }
+            }
+            Phase::Return => self.returned(),
+            Phase::Brake if self.desk.own_path => {}
+            Phase::Brake => self.desk.power.phase = Phase::Rest,
+        }
+    }
+
+    /// Begins a feed along an axis.
+    fn begin_feed(&mut self, axis: Axis, plus: bool) {
+        if !self.channel.hands_rest() {
+            return;
+        }
+        self.drop_path();
+        let position = self.channel.position();
+        let at = part(position, axis);
+        let room = self.desk.room(axis, part(self.desk.own_place(position, self.channel.offset()), axis));
+        // without limits as far as a path may lead
+        let far = if plus { room.1.min(FAR) } else { room.0.max(-FAR) };
+        let end = self.desk.power.end(axis, plus, at, at.saturating_add(far));
+        let mut to = position;
+        *part_mut(&mut to, axis) = end;
+        let pace = match self.desk.power.feed {
+            Feed::PerTurn(lead) => Pace::PerTurn(lead),
+            Feed::Rapid | Feed::PerTick(_) | Feed::Thread(..) => Pace::Rapid,
+        };
+        self.desk.power.began = Some(position);
+        if self.begin_line(to, pace) {
+            self.desk.power.phase = Phase::Feed { axis, plus };
+            self.desk.power.rapid = !self.desk.inputs.rapid;
+            self.feed_at();
+        } else {
+            self.desk.power.done = Joystick::Axis(axis, plus);
+            if room.0 == 0 && !plus || room.1 == 0 && plus {
+                self.desk.refuse(Refusal::Limit(axis, plus));
+            }
+        }
+    }
+
+    /// Sets the feed of what runs: the one asked for, or rapid.
+    fn feed_at(&mut self) {
+        let (power, rapid) = (&mut self.desk.power, self.desk.inputs.rapid);
+        if (power.rapid, power.runs_at) != (rapid, power.feed) {
+            (power.rapid, power.runs_at) = (rapid, power.feed);
+            self.channel.set_feed(if rapid { Feed::Rapid } else { power.feed });
+        }
+    }
+
+    fn brake(&mut self) {
+        self.channel.reset();
+        self.desk.own.clear();
+        self.desk.power.phase = Phase::Brake;
+        self.desk.power.repeats = 0;
+    }
+
+    /// A feed has come to its end: the joystick has led there; with repeats it goes back.
+    fn arrived(&mut self, axis: Axis, plus: bool) {
+        let power = &mut self.desk.power;
+        let (repeats, began) = (power.repeats, power.began);
+        power.done = Joystick::Axis(axis, plus);
+        power.phase = Phase::Rest;
+        if let (1.., Some(began)) = (repeats, began)
+            && self.begin_line(began, Pace::Rapid)
+        {
+            self.desk.power.phase = Phase::Return;
+        }
+    }
+
+    /// Back where the feed began: with repeats left the next one begins.
+    fn returned(&mut self) {
+        let power = &mut self.desk.power;
+        power.phase = Phase::Rest;
+        if power.repeats > 0 {
+            power.repeats = power.repeats.wrapping_sub(1);
+            if power.repeats > 0 {
+                power.done = Joystick::Off;
+            }
+        }
+    }
+
+    /// The joystick along the contour.
+    fn pull_on(&mut self) {
+        let pushed = self.pushed();
+        let power = matches!(self.desk.mode, Mode::Power);
+        let Joystick::Path(forward) = pushed else {
+            self.channel.pull(None);
+            // in power feed another direction leaves the contour when it stands
+            if power && self.channel.speed() == 0 && !matches!(pushed, Joystick::Off) {
+                self.desk.power.phase = Phase::Rest;
+                self.drop_path();
+            }
+            return;
+        };
+        if matches!(self.channel.state(), State::Idle | State::Ended) {
+            if !self.channel.hands_rest() {
+                return;
+            }
+            if matches!(self.desk.mode, Mode::Retrace) || !self.begin_contour() {
+                self.desk.power.done = pushed;
+                return;
+            }
+            if power {
+                self.desk.power.began = Some(self.channel.position());
+                self.desk.power.phase = Phase::Contour;
+            }
+        }
+        let speed = match (self.desk.inputs.rapid, self.desk.power.feed) {
+            (true, _) | (false, Feed::Rapid | Feed::Thread(..)) => Speed::MAX,
+            (false, Feed::PerTick(speed)) => {
+                let scaled = u64::from(speed).wrapping_mul(u64::from(self.channel.feed_override())) / 100;
+                u32::try_from(scaled).unwrap_or(u32::MAX)
+            }
+            (false, Feed::PerTurn(lead)) => self.channel.per_turn(lead),
+        };
+        self.channel.pull(Some(Pull { back: !forward, speed }));
+    }
+}
+
+/// Pulses that a feed without limits leads, at most.
+const FAR: i32 = 1 << 28;

@@ -1,0 +1,263 @@
+//! Carries out requests that the [mode](super::mode) allows.
+
+use super::command::{Command, Stop};
+use super::desk::{part, part_mut};
+use super::homing;
+use super::inputs::{AXES, Joystick, PerAxis};
+use super::mode::{Mode, Situation};
+use super::power::Phase;
+use super::refusal::Refusal;
+use super::{Alarm, Foreground};
+use interp_core::block::Pace;
+use interp_core::channel::State;
+use interp_core::drive::Drive;
+use interp_core::units::{Axis, Lattice, Length};
+
+impl Foreground<'_> {
+    /// What a request meets.
+    pub(super) fn situation(&self) -> Situation {
+        let desk = &self.desk;
+        let state = self.channel.state();
+        let drives = matches!(self.channel.drive(), Drive::Time);
+        let runs = matches!(state, State::Running | State::Filling | State::Resetting);
+        let moves = self.channel.speed() > 0
+            || !self.channel.hands_rest()
+            || desk.homing.axis().is_some()
+            || desk.starting
+            // a path that is driven by hand may stand as long as it likes
+            || (runs && drives);
+        Situation {
+            mode: desk.mode,
+            state,
+            moves,
+            own_path: desk.own_path,
+            alarm: self.alarm,
+            open: self.open,
+            guard: desk.inputs.guard,
+            motors: desk.motors,
+            verified: desk.verified.x && desk.verified.z,
+            contour: desk.contour.is_some(),
+            cut: desk.power.began.is_some(),
+            kept: desk.interrupted != 0,
+            thread: self.channel.in_thread(),
+        }
+    }
+
+    /// Does what was asked for and is allowed.
+    pub(super) fn carry_out(&mut self, command: Command) -> Result<(), Refusal> {
+        match command {
+            Command::Mode(mode) => self.change_mode(mode),
+            Command::Start => {
+                self.desk.starting = true;
+                self.start_when_still();
+            }
+            Command::Hold => drop(self.channel.hold()),
+            Command::Reset => self.reset(),
+            Command::Unlock => {
+                if matches!(self.channel.state(), State::Idle | State::Ended) {
+                    self.alarm = None;
+                }
+            }
+            Command::FeedOverride(percent) => self.channel.set_feed_override(percent),
+            Command::RapidOverride(percent) => self.channel.set_rapid_override(percent),
+            Command::SpindleOverride(percent) => self.desk.spindle_override = percent.min(200),
+            Command::OptionalStop(on) => self.channel.set_optional_stop(on),
+            Command::SingleBlock(on) => self.channel.set_single_block(on),
+            Command::DryRun(on) => self.desk.dry_run = on,
+            Command::MachineLock(on) => self.lock(on),
+            Command::Configure(machine) => {
+                if self.channel.configure(&machine) {
+                    self.desk.machine = machine;
+                }
+            }
+            Command::Settle(settings) => self.desk.settings = settings,
+            Command::Scale(click) => self.desk.wheels.set_scale(click),
+            Command::FeedRate(feed) => self.desk.power.feed = feed,
+            Command::StopAt(axis, stop) => self.set_stop(axis, stop)?,
+            Command::Contour(contour) => {
+                self.drop_path();
+                self.desk.contour = Some(contour);
+            }
+            Command::Return => self.go_back()?,
+            Command::Repeat(times) => self.desk.power.repeats = times,
+            Command::Home(axis) => self.seek_home(axis),
+            Command::Zero(axis, at) => self.set_place(axis, at),
+            Command::ConfirmPosition => self.desk.verified = PerAxis { x: true, z: true },
+            Command::Motors(on) => {
+                self.desk.motors = on;
+                if !on {
+                    self.desk.verified = PerAxis::default();
+                }
+            }
+            Command::KeepOffset => {
+                let offset = self.take_offset();
+                add(&mut self.desk.kept, offset);
+            }
+            Command::BookWear => {
+                let offset = self.take_offset();
+                add(&mut self.desk.wear, offset);
+            }
+            Command::NullOffset => {
+                let (offset, safe) = (self.channel.offset(), self.desk.settings.safe);
+                self.desk.nulling = true;
+                for axis in AXES {
+                    self.channel.go_hand(axis, part(offset, axis).wrapping_neg(), safe);
+                }
+            }
+            Command::Spindle(speed) => self.desk.spindle = speed,
+            Command::Resume => {
+                self.desk.interrupted = 0;
+                self.desk.starting = true;
+                self.start_when_still();
+            }
+        }
+        Ok(())
+    }
+
+    /// Leaves a mode and enters another, at rest.
+    fn change_mode(&mut self, mode: Mode) {
+        let before = self.desk.mode;
+        if mode == before {
+            return;
+        }
+        match (before, mode) {
+            (Mode::Automatic, Mode::Retrace) => {
+                // nothing moves: the drive can be another one
+                let _ = self.channel.set_drive(Drive::Wheel(self.desk.wheels.contour()));
+                let _ = self.channel.start();
+            }
+            (Mode::Retrace, Mode::Automatic) => {
+                let _ = self.channel.hold();
+                let _ = self.channel.set_drive(Drive::Time);
+            }
+            _ => {
+                self.drop_path();
+                let linked = matches!(mode, Mode::Linked);
+                let drive = if linked { Drive::Wheel(self.desk.wheels.contour()) } else { Drive::Time };
+                let _ = self.channel.set_drive(drive);
+            }
+        }
+        self.desk.mode = mode;
+        self.desk.power.cancel(self.desk.inputs.joystick);
+        if !matches!(self.desk.inputs.joystick, Joystick::Off) {
+            self.desk.refuse(Refusal::JoystickLatched);
+        }
+    }
+
+    /// Forgets a path of the machine's own that stands in the channel.
+    pub(super) fn drop_path(&mut self) {
+        if self.desk.own_path {
+            self.channel.abandon();
+            self.desk.own.clear();
+            self.desk.own_path = false;
+            if !matches!(self.desk.mode, Mode::Linked) {
+                let _ = self.channel.set_drive(Drive::Time);
+            }
+        }
+    }
+
+    /// Brakes and forgets.
+    fn reset(&mut self) {
+        self.channel.reset();
+        self.forget();
+        self.stand_down();
+        self.outputs.spindle = false;
+    }
+
+    /// Ends what the operator's side was doing.
+    pub(super) fn stand_down(&mut self) {
+        for axis in AXES {
+            self.channel.stop_hand(axis);
+        }
+        self.channel.pull(None);
+        self.desk.power.cancel(self.desk.inputs.joystick);
+        self.desk.homing = homing::Phase::Rest;
+        self.desk.starting = false;
+    }
+
+    /// Machine lock: while it is on only the display moves; then it goes back to where the axes are.
+    fn lock(&mut self, on: bool) {
+        if on && self.desk.locked.is_none() {
+            self.desk.locked = Some((self.channel.position(), self.channel.offset()));
+        } else if let (false, Some((position, offset))) = (on, self.desk.locked.take()) {
+            self.channel.set_position(position);
+            self.channel.set_offset(offset);
+        }
+    }
+
+    fn set_stop(&mut self, axis: Axis, stop: Stop) -> Result<(), Refusal> {
+        let pulse = match axis {
+            Axis::X => self.desk.machine.x.pulse,
+            Axis::Z => self.desk.machine.z.pulse,
+        };
+        *self.desk.power.stops.of_mut(axis) = match stop {
+            Stop::Off => None,
+            Stop::Here => Some(part(self.channel.position(), axis)),
+            Stop::At(at) => Some(pulse.nearest(at)),
+        };
+        Ok(())
+    }
+
+    /// Rapid back to where the last power feed began.
+    fn go_back(&mut self) -> Result<(), Refusal> {
+        let Some(began) = self.desk.power.began else { return Err(Refusal::NothingToReturnFrom) };
+        self.drop_path();
+        if self.begin_line(began, Pace::Rapid) {
+            self.desk.power.phase = Phase::Return;
+        }
+        Ok(())
+    }
+
+    /// The axis is at a coordinate; it counts as touched off.
+    fn set_place(&mut self, axis: Axis, at: Length) {
+        let pulse = match axis {
+            Axis::X => self.desk.machine.x.pulse,
+            Axis::Z => self.desk.machine.z.pulse,
+        };
+        self.drop_path();
+        let mut position = self.channel.position();
+        let place = part_mut(&mut position, axis);
+        // what is shown is the place of the tool, offset and all
+        let shown = part(self.desk.physical(self.channel.position(), self.channel.offset()), axis);
+        let by = pulse.nearest(at).wrapping_sub(shown);
+        *place = place.wrapping_add(by);
+        if self.channel.set_position(position) {
+            let datum = part_mut(&mut self.desk.datum, axis);
+            *datum = datum.wrapping_sub(by);
+            let stop = self.desk.power.stops.of_mut(axis);
+            *stop = stop.map(|stop| stop.wrapping_add(by));
+            self.desk.power.began = None;
+            *self.desk.verified.of_mut(axis) = true;
+        }
+    }
+
+    /// The offset becomes something else's.
+    fn take_offset(&mut self) -> Lattice {
+        let offset = self.channel.offset();
+        self.channel.set_offset(Lattice::default());
+        offset
+    }
+
+    /// After an alarm nobody may know where the axes are.
+    pub(super) fn lose_place(&mut self, alarm: Alarm) {
+        let jump = |limits: &interp_core::config::AxisLimits| i64::from(limits.jump);
+        let machine = &self.desk.machine;
+        let fast = |axis: Axis| match axis {
+            Axis::X => self.channel.hand_advance(axis).saturating_abs() > jump(&machine.x),
+            Axis::Z => self.channel.hand_advance(axis).saturating_abs() > jump(&machine.z),
+        };
+        let path = u64::from(self.channel.speed()) > u64::from(machine.x.jump.min(machine.z.jump));
+        let lost = AXES.map(|axis| !alarm.brakes() && (path || fast(axis)) || alarm.loses_pulses());
+        for (axis, lost) in AXES.into_iter().zip(lost) {
+            *self.desk.verified.of_mut(axis) &= !lost;
+        }
+        if self.situation().in_cycle() {
+            self.desk.interrupted = self.channel.line();
+        }
+    }
+}
+
+const fn add(to: &mut Lattice, more: Lattice) {
+    to.x = to.x.wrapping_add(more.x);
+    to.z = to.z.wrapping_add(more.z);
+}
