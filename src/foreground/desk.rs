@@ -1,5 +1,6 @@
 //! What the operator has set: mode, switches, coordinates; and what has become of what he asked for.
 
+use super::closed_loop::ClosedLoop;
 use super::contour::{Contour, Own};
 use super::homing;
 use super::inputs::{Inputs, PerAxis};
@@ -11,7 +12,7 @@ use super::wheels::Wheels;
 use interp_core::block::{Feed, Speed};
 use interp_core::config::Machine;
 use interp_core::drive::Trouble;
-use interp_core::units::{Axis, Lattice};
+use interp_core::units::{Axis, Lattice, PulseSize};
 
 /// The operator's side of a lathe.
 #[derive(Clone, Debug)]
@@ -46,6 +47,7 @@ pub(super) struct Desk {
     pub(super) spindle_override: u16,
     /// Line of the block in which a program was interrupted, 0 for none.
     pub(super) interrupted: u32,
+    pub(super) closed_loop: ClosedLoop,
     /// Following errors, nm.
     pub(super) following: PerAxis<i32>,
     /// What the drive could not do in the last tick.
@@ -85,6 +87,7 @@ impl Desk {
             spindle: 0,
             spindle_override: 100,
             interrupted: 0,
+            closed_loop: ClosedLoop::new(),
             following: PerAxis { x: 0, z: 0 },
             trouble: None,
             nulling: false,
@@ -105,6 +108,14 @@ impl Desk {
         let count = self.refusals;
         self.refusals = 0;
         (self.refused.take(), count)
+    }
+
+    /// How far a pulse moves an axis.
+    pub(super) const fn pulse(&self, axis: Axis) -> PulseSize {
+        match axis {
+            Axis::X => self.machine.x.pulse,
+            Axis::Z => self.machine.z.pulse,
+        }
     }
 
     /// Feed of a dry run, in one.

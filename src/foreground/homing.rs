@@ -88,6 +88,7 @@ impl Foreground<'_> {
         if self.channel.set_position(position) {
             self.channel.set_offset(offset);
             *self.desk.verified.of_mut(axis) = true;
+            self.desk.closed_loop.forget(axis);
         }
     }
 
@@ -105,11 +106,7 @@ impl Foreground<'_> {
 
     /// So many nanometres in pulses.
     fn pulses(&self, axis: Axis, nm: i64) -> i32 {
-        let pulse = match axis {
-            Axis::X => self.desk.machine.x.pulse,
-            Axis::Z => self.desk.machine.z.pulse,
-        };
-        Length::from_nm(nm).map_or(0, |length| pulse.nearest(length))
+        Length::from_nm(nm).map_or(0, |length| self.desk.pulse(axis).nearest(length))
     }
 }
 

@@ -4,12 +4,14 @@
 //! what is not there at a tick's start is taken at the next.
 
 pub mod alarm;
+mod closed_loop;
 pub mod command;
 pub mod contour;
 mod desk;
 pub mod heartbeat;
 mod homing;
 pub mod inputs;
+pub mod kept;
 pub mod mode;
 mod operate;
 pub mod outputs;
@@ -34,7 +36,7 @@ use crate::queue::Consumer;
 use alarm::{Alarm, Faults};
 pub use command::Command;
 use desk::Desk;
-use inputs::Inputs;
+use inputs::{Inputs, PerAxis};
 use outputs::Outputs;
 use refusal::Refusal;
 

@@ -17,6 +17,7 @@ impl Foreground<'_> {
         if let Some(reading) = self.desk.inputs.spindle.take() {
             self.channel.read(&drive::Inputs { spindle: Some(reading), wheel: 0 });
         }
+        self.close_loop();
         self.turn_wheels();
         self.home_on();
         self.feed_on();
@@ -182,6 +183,7 @@ impl Foreground<'_> {
         self.watch_switches();
         self.watch_limits();
         self.desk.place = self.desk.own_place(self.channel.position(), self.channel.offset());
+        self.desk.closed_loop.made(self.desk.place);
         self.desk.ticks = self.desk.ticks.wrapping_add(1);
     }
 
@@ -237,10 +239,7 @@ impl Foreground<'_> {
 
     /// Pulses that an axis goes at most while the path brakes.
     fn braking_pulses(&self, axis: Axis) -> i32 {
-        let pulse = match axis {
-            Axis::X => self.desk.machine.x.pulse,
-            Axis::Z => self.desk.machine.z.pulse,
-        };
+        let pulse = self.desk.pulse(axis);
         let nm = self.channel.braking() >> interp_core::config::FRACTION_BITS;
         let pulses = nm.saturating_mul(u64::from(pulse.denominator())).checked_div(u64::from(pulse.numerator()));
         i32::try_from(pulses.unwrap_or(0)).unwrap_or(i32::MAX >> 2).saturating_add(2)

@@ -82,7 +82,10 @@ impl Foreground<'_> {
             Command::Repeat(times) => self.desk.power.repeats = times,
             Command::Home(axis) => self.seek_home(axis),
             Command::Zero(axis, at) => self.set_place(axis, at),
-            Command::ConfirmPosition => self.desk.verified = PerAxis { x: true, z: true },
+            Command::ConfirmPosition => {
+                self.desk.verified = PerAxis { x: true, z: true };
+                AXES.into_iter().for_each(|axis| self.desk.closed_loop.forget(axis));
+            }
             Command::Motors(on) => {
                 self.desk.motors = on;
                 if !on {
@@ -186,10 +189,7 @@ impl Foreground<'_> {
     }
 
     fn set_stop(&mut self, axis: Axis, stop: Stop) -> Result<(), Refusal> {
-        let pulse = match axis {
-            Axis::X => self.desk.machine.x.pulse,
-            Axis::Z => self.desk.machine.z.pulse,
-        };
+        let pulse = self.desk.pulse(axis);
         *self.desk.power.stops.of_mut(axis) = match stop {
             Stop::Off => None,
             Stop::Here => Some(part(self.channel.position(), axis)),
@@ -210,10 +210,7 @@ impl Foreground<'_> {
 
     /// The axis is at a coordinate; it counts as touched off.
     fn set_place(&mut self, axis: Axis, at: Length) {
-        let pulse = match axis {
-            Axis::X => self.desk.machine.x.pulse,
-            Axis::Z => self.desk.machine.z.pulse,
-        };
+        let pulse = self.desk.pulse(axis);
         self.drop_path();
         let mut position = self.channel.position();
         let place = part_mut(&mut position, axis);
@@ -228,6 +225,7 @@ impl Foreground<'_> {
             *stop = stop.map(|stop| stop.wrapping_add(by));
             self.desk.power.began = None;
             *self.desk.verified.of_mut(axis) = true;
+            self.desk.closed_loop.forget(axis);
         }
     }
 

@@ -16,7 +16,7 @@ pub struct AxisSettings {
     pub home_speed: Speed,
     /// Coordinate where it opens again.
     pub home: i32,
-    /// Following error that is an alarm, pulses; 0 for none.
+    /// Following error that is an alarm, nm; 0 for none.
     pub following: i32,
 }
 

@@ -79,11 +79,19 @@ pub(super) struct Hands {
     offset: Lattice,
     /// The part of its speed that the program may have, 16 fraction bits.
     left: u32,
+    /// Pulses of X and Z to be made in the next tick that nobody counts.
+    correction: (i32, i32),
 }
 
 impl Hands {
     pub(super) const fn new(machine: &Machine) -> Self {
-        Self { x: AxisHand::new(&machine.x), z: AxisHand::new(&machine.z), offset: Lattice { x: 0, z: 0 }, left: ALL }
+        Self {
+            x: AxisHand::new(&machine.x),
+            z: AxisHand::new(&machine.z),
+            offset: Lattice { x: 0, z: 0 },
+            left: ALL,
+            correction: (0, 0),
+        }
     }
 
     /// Other limits, at rest.
@@ -150,11 +158,13 @@ impl<const N: usize> Channel<N> {
     /// The tick of the hands: pulses of X and Z to be added to the program's.
     #[inline]
     pub(super) fn by_hand(&mut self) -> (i32, i32) {
+        let (x, z) = core::mem::take(&mut self.hands.correction);
         if self.hands.at_rest() {
             (self.hands.x.at, self.hands.z.at) = (self.position.x, self.position.z);
-            return (0, 0);
+            return (x, z);
         }
-        self.move_by_hand()
+        let by_hand = self.move_by_hand();
+        (by_hand.0.wrapping_add(x), by_hand.1.wrapping_add(z))
     }
 
     #[cold]
@@ -202,6 +212,11 @@ impl<const N: usize> Channel<N> {
     /// Stops what a hand does, as soon as its acceleration allows.
     pub fn stop_hand(&mut self, axis: Axis) {
         self.hands.of(axis).hand.stop();
+    }
+
+    /// Makes pulses in the next tick that are no part of the position: what a scale found missing.
+    pub const fn correct(&mut self, x: i32, z: i32) {
+        self.hands.correction = (x, z);
     }
 
     /// Whether no hand moves nor has to.

@@ -19,7 +19,7 @@ fn settings_are_listed_under_numbers_and_names() {
         assert!(list.lines().any(|listed| listed == line), "{line} is not in\n{list}");
     }
     assert!(list.ends_with("\r\nok\r\n") && list.matches("ok").count() == 1);
-    assert_eq!(list.lines().count(), 6 + 48 + 1 + 1);
+    assert_eq!(list.lines().count(), 6 + crate::background::parameters::DEFINITIONS.len() + 1 + 1);
     // what was listed may be sent back, and changes nothing
     for line in list.lines().filter(|line| line.starts_with('$') && !line.starts_with("$start")) {
         bench.ticks(3);
