@@ -4,7 +4,7 @@
 //! blocks. A contour begins where the tool stands when it is first driven.
 
 use heapless::Deque;
-use interp_core::block::{Block, Builder, Pace, Path, Work};
+use interp_core::block::{Block, Builder, Feed, Pace, Path, Work};
 use interp_core::config::Machine;
 use interp_core::units::{Lattice, Length, Point, PulseSize, Sense};
 
@@ -45,9 +45,15 @@ impl Own {
     }
 
     /// Straight from one place to another. False where they are one.
-    pub(super) fn line(&mut self, machine: &Machine, from: Lattice, to: Lattice, pace: Pace) -> bool {
+    pub(super) fn line(&mut self, machine: &Machine, from: Lattice, to: Lattice, feed: Feed) -> bool {
         let (Some(start), Some(end)) = (point(machine, from), point(machine, to)) else { return false };
-        self.build(machine, start, Path::Line, end, pace)
+        let built = self.build(machine, start, Path::Line, end);
+        for block in &mut self.blocks {
+            if let Work::Motion(motion) = &mut block.work {
+                motion.set_feed(feed);
+            }
+        }
+        built
     }
 
     /// A contour from a place on, as fast as the axes allow. False where it can't be followed.
@@ -64,7 +70,7 @@ impl Own {
         else {
             return false;
         };
-        self.build(machine, start, path, Point { x, z }, Pace::Rapid)
+        self.build(machine, start, path, Point { x, z })
     }
 
     /// Of each block: the least and the greatest place that it leads through, and its end, pulses from its start.
@@ -77,9 +83,10 @@ impl Own {
         })
     }
 
-    fn build(&mut self, machine: &Machine, start: Point, path: Path, end: Point, pace: Pace) -> bool {
+    /// A path as fast as the axes allow.
+    fn build(&mut self, machine: &Machine, start: Point, path: Path, end: Point) -> bool {
         self.blocks.clear();
-        let built = Builder::new(machine, start).motion(path, end, pace);
+        let built = Builder::new(machine, start).motion(path, end, Pace::Rapid);
         for motion in &built.motions {
             // at most two
             let _ = self.blocks.push_back(Block { line: 0, work: Work::Motion(*motion) });

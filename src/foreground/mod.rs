@@ -288,31 +288,4 @@ pub const fn word_state(word: u32) -> State {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nothing_starts_a_locked_machine_and_its_blocks_are_forgotten() {
-        let machine = crate::background::parameters::Parameters::new().machine().unwrap();
-        let (mut blocks, mut commands) = (crate::queue::Queue::<_, 2>::new(), crate::queue::Queue::<_, 2>::new());
-        let ((mut block_in, block_out), (mut command_in, command_out)) = (blocks.split(), commands.split());
-        let mut foreground = Foreground::new(&machine, Lattice::default(), block_out, command_out);
-        foreground.raise(Alarm::Watchdog);
-        let end = Block { line: 1, work: interp_core::block::Work::End };
-        assert!(block_in.enqueue(end).is_ok() && command_in.enqueue(Command::Start).is_ok());
-        let report = foreground.tick(&mut |_: interp_core::train::Event| {});
-        assert_eq!((report.state, block_in.is_empty()), (State::Idle, true));
-        foreground.obey(Command::Unlock);
-        // the watchdog's restart may have cost pulses
-        assert_eq!(foreground.request(Command::Start), Err(Refusal::Unverified));
-        foreground.obey(Command::ConfirmPosition);
-        foreground.obey(Command::Start);
-        assert_eq!((foreground.alarm(), foreground.state()), (None, State::Filling));
-    }
-
-    #[test]
-    fn every_state_comes_back_from_its_number() {
-        let states = [0, 1, 2, 3, 4, 5, 6].map(word_state);
-        assert_eq!(states.map(state_word), [0, 1, 2, 3, 4, 5, 6]);
-    }
-}
+mod tests;

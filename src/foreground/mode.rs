@@ -66,6 +66,8 @@ pub struct Situation {
     pub state: State,
     /// Anything moves, or is about to.
     pub moves: bool,
+    /// A handwheel's axis moves, or is about to.
+    pub hands: bool,
     /// A path of the machine's own (a contour, a power feed) is in the channel, not a program.
     pub own_path: bool,
     /// Why the machine is locked.
@@ -132,7 +134,7 @@ pub fn refusal(command: &Command, now: &Situation) -> Option<Refusal> {
         Command::Return if !now.cut => Some(Refusal::NothingToReturnFrom),
         Command::Return => locked(now).or(guarded(now)).or(powered(now)).or(at_rest(now)),
         Command::Repeat(_) => at_rest(now),
-        Command::KeepOffset | Command::BookWear => at_rest(now),
+        Command::KeepOffset | Command::BookWear => now.hands.then_some(Refusal::Moving),
         Command::NullOffset if now.thread => Some(Refusal::InThread),
         Command::NullOffset => locked(now).or(powered(now)),
         Command::Spindle(speed) if *speed != 0 => locked(now).or(guarded(now)),

@@ -6,7 +6,7 @@ use super::mode::Mode;
 use super::power::Phase;
 use super::refusal::Refusal;
 use super::{Alarm, Foreground};
-use interp_core::block::Pace;
+use interp_core::block::Feed;
 use interp_core::channel::{Report, State};
 use interp_core::drive::{self, Drive};
 use interp_core::units::{Axis, Lattice};
@@ -139,10 +139,10 @@ impl Foreground<'_> {
     }
 
     /// Begins a straight path to a place. False where it is there already.
-    pub(super) fn begin_line(&mut self, to: Lattice, pace: Pace) -> bool {
+    pub(super) fn begin_line(&mut self, to: Lattice, feed: Feed) -> bool {
         let from = self.channel.position();
         let _ = self.channel.set_drive(Drive::Time);
-        self.desk.own.line(&self.desk.machine, from, to, pace) && self.begin_own()
+        self.desk.own.line(&self.desk.machine, from, to, feed) && self.begin_own()
     }
 
     /// Whether the path that was built stays inside the soft limits.

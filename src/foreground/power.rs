@@ -9,7 +9,7 @@ use super::desk::{part, part_mut};
 use super::inputs::{Joystick, PerAxis};
 use super::mode::Mode;
 use super::refusal::Refusal;
-use interp_core::block::{Feed, Pace, Speed};
+use interp_core::block::{Feed, Speed};
 use interp_core::channel::{Pull, State};
 use interp_core::units::{Axis, Lattice};
 
@@ -59,6 +59,11 @@ impl Power {
             runs_at: feed,
             done: Joystick::Off,
         }
+    }
+
+    /// The feed that it runs at.
+    const fn runs(&self) -> Feed {
+        if self.rapid { Feed::Rapid } else { self.runs_at }
     }
 
     /// Forgets what it was doing; stops and feed stay.
@@ -118,7 +123,7 @@ impl Foreground<'_> {
             Phase::Return if self.desk.own_path => {
                 // with the joystick let go, or a push of it that asked for no return, it brakes
                 let repeats = self.desk.power.repeats > 0;
-                if repeats && matches!(pushed, Joystick::Off) || self.desk.inputs.guard {
+                if repeats && matches!(self.desk.inputs.joystick, Joystick::Off) || self.desk.inputs.guard {
                     self.brake();
                 }
             }
@@ -142,15 +147,10 @@ impl Foreground<'_> {
         let end = self.desk.power.end(axis, plus, at, at.saturating_add(far));
         let mut to = position;
         *part_mut(&mut to, axis) = end;
-        let pace = match self.desk.power.feed {
-            Feed::PerTurn(lead) => Pace::PerTurn(lead),
-            Feed::Rapid | Feed::PerTick(_) | Feed::Thread(..) => Pace::Rapid,
-        };
-        self.desk.power.began = Some(position);
-        if self.begin_line(to, pace) {
+        let (power, rapid) = (&mut self.desk.power, self.desk.inputs.rapid);
+        (power.began, power.rapid, power.runs_at) = (Some(position), rapid, power.feed);
+        if self.begin_line(to, self.desk.power.runs()) {
             self.desk.power.phase = Phase::Feed { axis, plus };
-            self.desk.power.rapid = !self.desk.inputs.rapid;
-            self.feed_at();
         } else {
             self.desk.power.done = Joystick::Axis(axis, plus);
             if room.0 == 0 && !plus || room.1 == 0 && plus {
@@ -164,7 +164,8 @@ impl Foreground<'_> {
         let (power, rapid) = (&mut self.desk.power, self.desk.inputs.rapid);
         if (power.rapid, power.runs_at) != (rapid, power.feed) {
             (power.rapid, power.runs_at) = (rapid, power.feed);
-            self.channel.set_feed(if rapid { Feed::Rapid } else { power.feed });
+            let runs = power.runs();
+            self.channel.set_feed(runs);
         }
     }
 
@@ -182,7 +183,7 @@ impl Foreground<'_> {
         power.done = Joystick::Axis(axis, plus);
         power.phase = Phase::Rest;
         if let (1.., Some(began)) = (repeats, began)
-            && self.begin_line(began, Pace::Rapid)
+            && self.begin_line(began, Feed::Rapid)
         {
             self.desk.power.phase = Phase::Return;
         }

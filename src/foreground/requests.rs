@@ -8,7 +8,7 @@ use super::mode::{Mode, Situation};
 use super::power::Phase;
 use super::refusal::Refusal;
 use super::{Alarm, Foreground};
-use interp_core::block::Pace;
+use interp_core::block::Feed;
 use interp_core::channel::State;
 use interp_core::drive::Drive;
 use interp_core::units::{Axis, Lattice, Length};
@@ -30,6 +30,7 @@ impl Foreground<'_> {
             mode: desk.mode,
             state,
             moves,
+            hands: !self.channel.hands_rest(),
             own_path: desk.own_path,
             alarm: self.alarm,
             open: self.open,
@@ -202,7 +203,7 @@ impl Foreground<'_> {
     fn go_back(&mut self) -> Result<(), Refusal> {
         let Some(began) = self.desk.power.began else { return Err(Refusal::NothingToReturnFrom) };
         self.drop_path();
-        if self.begin_line(began, Pace::Rapid) {
+        if self.begin_line(began, Feed::Rapid) {
             self.desk.power.phase = Phase::Return;
         }
         Ok(())

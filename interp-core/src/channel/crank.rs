@@ -241,9 +241,15 @@ impl<const N: usize> Channel<N> {
         None
     }
 
-    /// Does what stands next in the program and is no motion.
+    /// Does what stands next in the program and is no motion. By the wheel a program does not end: it could not be gone back
+    /// into.
     pub(super) fn other_work(&mut self) -> Option<Output> {
-        let other = self.ahead.next().is_some_and(|(block, _)| !matches!(block.work, Work::Motion(_)));
+        let wheel = matches!(self.crank.drive, Drive::Wheel(_));
+        let other = self.ahead.next().is_some_and(|(block, _)| match block.work {
+            Work::Motion(_) => false,
+            Work::End => !wheel,
+            Work::Dwell(_) | Work::Output(_) | Work::Stop | Work::OptionalStop => true,
+        });
         if other && matches!(self.state, State::Running) {
             self.crank.ungear();
             if let super::Next::Output(output) = self.next_block() {

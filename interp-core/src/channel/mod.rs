@@ -433,7 +433,10 @@ impl<const N: usize> Channel<N> {
         self.shaper.end_tick(out);
         if matches!(self.state, State::Filling) {
             let patient = self.waited < FILL_PATIENCE;
-            if self.complete || !self.ahead.has_room() || (!patient && !self.ahead.is_empty()) {
+            if self.closed && self.ahead.is_empty() {
+                self.line = 0;
+                self.state = State::Idle;
+            } else if self.complete || !self.ahead.has_room() || (!patient && !self.ahead.is_empty()) {
                 self.state = State::Running;
             } else if !patient {
                 self.line = 0;

@@ -1,0 +1,80 @@
+//! Linked feed and retrace: the contour wheel.
+
+use super::contour::Contour;
+use super::*;
+use interp_core::drive::wheel::Click;
+use interp_core::units::{Length, Point, Sense};
+
+fn um(x: i32, z: i32) -> Point {
+    Point { x: Length::from_um(x).unwrap(), z: Length::from_um(z).unwrap() }
+}
+
+#[test]
+fn the_contour_wheel_leads_along_an_arc_and_back_and_never_off_it() {
+    let mut bench = Bench::mode(Mode::Linked);
+    bench.ask(Command::Scale(Some(Click::DECADES[2]))).unwrap();
+    let arc = Contour::Arc { end: um(2000, -2000), centre: um(2000, 0), sense: Sense::Clockwise };
+    bench.ask(Command::Contour(arc)).unwrap();
+    bench.turn_contour(3, 300);
+    bench.settle();
+    assert_eq!(bench.at, Lattice { x: 1600, z: -800 });
+    assert!(bench.shown().dropped_contour > 0);
+    bench.turn_contour(-2, 300);
+    bench.settle();
+    assert_eq!(bench.at, Lattice::default());
+    for at in &bench.track {
+        let (x, z) = (f64::from(at.x) * 1.25 - 2000.0, f64::from(at.z) * 2.5);
+        assert!((x.hypot(z) - 2000.0).abs() <= 1.3, "{at:?}");
+    }
+    bench.keep_limits();
+}
+
+#[test]
+fn linked_feed_without_a_contour_is_refused_by_name() {
+    let mut bench = Bench::mode(Mode::Linked);
+    bench.turn_contour(3, 3);
+    bench.settle();
+    assert_eq!((bench.at, bench.refused()), (Lattice::default(), Some(Refusal::NoContour)));
+    assert_eq!(bench.shown().dropped_contour, 9);
+}
+
+#[test]
+fn a_program_is_run_by_the_wheel_forward_and_back_over_its_joints() {
+    let mut bench = Bench::mode(Mode::Linked);
+    bench.ask(Command::Scale(Some(Click::DECADES[2]))).unwrap();
+    bench.load("G1 X1 Z-1 F100\nG1 Z-3\nG1 X2\nM2");
+    bench.ask(Command::Start).unwrap();
+    bench.turn_contour(2, 600);
+    bench.settle();
+    assert_eq!(bench.at, Lattice { x: 1600, z: -1200 });
+    bench.turn_contour(-2, 600);
+    bench.settle();
+    assert_eq!(bench.at, Lattice::default());
+    bench.turn_contour(2, 600);
+    bench.settle();
+    assert_eq!(bench.at, Lattice { x: 1600, z: -1200 });
+    bench.keep_limits();
+}
+
+#[test]
+fn a_held_program_is_retraced_and_goes_on_from_anywhere() {
+    let mut bench = Bench::new();
+    bench.ask(Command::Scale(Some(Click::DECADES[2]))).unwrap();
+    bench.load("G0 X5\nG1 Z-3 F600\nG1 X6\nG1 Z-6\nG0 X8\nM2");
+    bench.ask(Command::Start).unwrap();
+    bench.ticks(1_000);
+    assert_eq!(bench.ask(Command::Mode(Mode::Retrace)), Err(Refusal::Moving));
+    bench.ask(Command::Hold).unwrap();
+    bench.settle();
+    let held = bench.at;
+    bench.ask(Command::Mode(Mode::Retrace)).unwrap();
+    bench.turn_contour(-1, 300);
+    bench.settle();
+    assert_ne!(bench.at, held);
+    assert_eq!(bench.ask(Command::Start), Err(Refusal::WrongMode(Mode::Automatic)));
+    bench.ask(Command::Mode(Mode::Automatic)).unwrap();
+    bench.ask(Command::Start).unwrap();
+    bench.settle();
+    assert_eq!((bench.at, bench.shown().state), (Lattice { x: 6400, z: -2400 }, State::Ended));
+    bench.keep_limits();
+}

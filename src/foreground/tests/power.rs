@@ -1,0 +1,131 @@
+//! Power feed.
+
+use super::command::Stop;
+use super::contour::Contour;
+use super::*;
+use interp_core::config::speed_of;
+use interp_core::drive::wheel::Click;
+use interp_core::units::{Feedrate, Length};
+
+fn feed(mm_per_min: u64) -> Feed {
+    Feed::PerTick(speed_of(Feedrate::from_nm_per_min(mm_per_min * 1_000_000).unwrap()))
+}
+
+fn mm(mm: i32) -> Length {
+    Length::from_um(mm * 1000).unwrap()
+}
+
+fn power() -> Bench {
+    let mut bench = Bench::mode(Mode::Power);
+    bench.ask(Command::FeedRate(feed(300))).unwrap();
+    bench
+}
+
+#[test]
+fn the_joystick_feeds_to_the_stop_and_no_further_and_returns() {
+    let mut bench = power();
+    bench.ask(Command::StopAt(Axis::Z, Stop::At(mm(-2)))).unwrap();
+    bench.inputs.joystick = Joystick::Axis(Axis::Z, false);
+    bench.ticks(200);
+    // 300 mm/min are 2 pulses a tick
+    let before = bench.at.z;
+    bench.ticks(100);
+    assert!((before - bench.at.z - 200).abs() <= 2, "{}", before - bench.at.z);
+    bench.settle();
+    assert_eq!(bench.at, Lattice { x: 0, z: -800 });
+    bench.inputs.joystick = Joystick::Off;
+    bench.ticks(5);
+    bench.ask(Command::Return).unwrap();
+    bench.settle();
+    assert_eq!(bench.at, Lattice::default());
+    bench.keep_limits();
+}
+
+#[test]
+fn letting_go_brakes_and_the_feed_is_changed_while_it_moves_from_nothing_to_rapid() {
+    let mut bench = power();
+    bench.ask(Command::FeedOverride(0)).unwrap();
+    bench.inputs.joystick = Joystick::Axis(Axis::X, true);
+    bench.ticks(300);
+    assert_eq!(bench.at, Lattice::default());
+    bench.ask(Command::FeedOverride(100)).unwrap();
+    bench.ticks(300);
+    let slow = bench.at.x;
+    assert!(slow > 900, "{slow}");
+    bench.ask(Command::FeedRate(feed(600))).unwrap();
+    bench.ticks(100);
+    let at = bench.at.x;
+    bench.ticks(100);
+    assert!((bench.at.x - at - 800).abs() <= 3, "{}", bench.at.x - at);
+    bench.inputs.rapid = true;
+    bench.ticks(300);
+    let at = bench.at.x;
+    bench.ticks(100);
+    // 5000 mm/min
+    assert!((bench.at.x - at - 6667).abs() <= 20, "{}", bench.at.x - at);
+    bench.inputs.rapid = false;
+    bench.ticks(300);
+    bench.inputs.joystick = Joystick::Off;
+    bench.settle();
+    let at = bench.at;
+    bench.settle();
+    assert_eq!(bench.at, at);
+    bench.keep_limits();
+}
+
+#[test]
+fn feeds_are_repeated_there_and_back_as_often_as_asked_for() {
+    let mut bench = power();
+    bench.ask(Command::StopAt(Axis::Z, Stop::At(mm(-1)))).unwrap();
+    bench.ask(Command::Repeat(3)).unwrap();
+    bench.inputs.joystick = Joystick::Axis(Axis::Z, false);
+    bench.settle();
+    assert_eq!(bench.at, Lattice::default());
+    let ends = bench.track.windows(2).filter(|pair| pair[0].z != -400 && pair[1].z == -400).count();
+    assert_eq!(ends, 3);
+    bench.ticks(500);
+    assert_eq!(bench.at, Lattice::default());
+    bench.keep_limits();
+}
+
+#[test]
+fn the_other_slide_is_the_operators_while_power_feeds_one() {
+    let mut bench = power();
+    bench.ask(Command::Scale(Some(Click::DECADES[1]))).unwrap();
+    bench.inputs.joystick = Joystick::Axis(Axis::Z, false);
+    bench.ticks(200);
+    for _ in 0..40 {
+        bench.turn(Axis::X, 1, 1);
+        bench.ticks(10);
+    }
+    bench.turn(Axis::Z, 5, 1);
+    bench.inputs.joystick = Joystick::Off;
+    bench.settle();
+    // ten detents of 10 um
+    assert_eq!((bench.at.x, bench.shown().dropped.z), (80, 5));
+    assert_eq!(bench.shown().programmed, bench.at);
+    bench.keep_limits();
+}
+
+#[test]
+fn the_joystick_leads_along_a_taper_and_back() {
+    let mut bench = power();
+    let end = interp_core::units::Point { x: mm(1), z: mm(-3) };
+    bench.ask(Command::Contour(Contour::Taper(end))).unwrap();
+    bench.inputs.joystick = Joystick::Path(true);
+    bench.ticks(500);
+    bench.inputs.joystick = Joystick::Off;
+    bench.settle();
+    let part = bench.at;
+    assert!(part.z < -200 && part.z > -1200, "{part:?}");
+    // on the line: x / 800 = z / -1200, half a pulse of Z at most off
+    assert!((part.x * 1200 + part.z * 800).abs() <= 1200, "{part:?}");
+    bench.inputs.joystick = Joystick::Path(true);
+    bench.settle();
+    assert_eq!(bench.at, Lattice { x: 800, z: -1200 });
+    bench.inputs.joystick = Joystick::Path(false);
+    bench.inputs.rapid = true;
+    bench.settle();
+    assert_eq!(bench.at, Lattice::default());
+    bench.keep_limits();
+}
