@@ -13,7 +13,7 @@
 //! at once and makes them in a short loop, to the same events.
 
 use crate::config::{Machine, TICK_CLOCKS};
-use crate::curve::strides::Strides;
+use crate::curve::strides::{Strides, Turned, Turns};
 use crate::times::{FRACTION, Times};
 use crate::train::{Event, Levels, Train};
 use crate::units::Axis;
@@ -24,6 +24,9 @@ const NEVER: i32 = i32::MAX;
 /// The tick's end.
 #[expect(clippy::cast_possible_wrap, reason = "12 000")]
 const BORDER: i32 = TICK_CLOCKS as i32;
+
+/// Brings a time's fraction to the top of a word, where it carries.
+const TO_TOP: u32 = 32 - FRACTION;
 
 /// Clocks as the shaper holds them; 0.7 s, far more than any width, is the most. Times of a tick are then below 2^25
 /// in magnitude but for [`NEVER`], which nothing is added to, so no sum leaves 32 bits.
@@ -169,7 +172,8 @@ impl Shaper {
         self.levels.plus(axis)
     }
 
-    /// Makes up to `count` steps that come evenly: each is straight, or diagonal where `turns` says so. Makes none, or fewer, where a step touches a rule: such a step is for
+    /// Makes up to `count` steps that come evenly: each is straight, or diagonal where `turns` says so.
+    /// Makes none, or fewer, where a step touches a rule: such a step is for
     /// [`step`](Self::step), to which all others come out the same.
     ///
     /// Inside a row no rule is touched: pins are low and directions set; the first step is not before either axis is
@@ -181,10 +185,10 @@ impl Shaper {
         times: &mut Times,
         count: u32,
         strides: &Strides,
-        mut turns: impl FnMut() -> bool,
+        turns: &mut impl Turns,
         out: &mut impl Train,
     ) -> Made {
-        let mut made = Made { steps: 0, diagonals: 0 };
+        let made = Made { steps: 0, diagonals: 0 };
         self.catch_up(out);
         if !strides.agree(self.levels) {
             self.face(strides, times.clock(), out);
@@ -192,35 +196,33 @@ impl Shaper {
         let Some(row) = self.row(times, count, strides, out) else { return made };
         let low = self.levels;
         let [straight, diagonal] = strides.raised;
-        let up = |raised: Levels| u32::from(low.bits() | raised.bits()) << 16;
+        let (first, spacing) = (times.time, times.spacing);
+        out.put(Event::new(low, (first >> FRACTION).wrapping_sub(self.began.cast_unsigned())));
+        // clocks to the next step are the spacing's whole ones, and one more where the fractions carry: below 2^15
+        let up = |raised: Levels| {
+            let pulse = pulse_of(out, Levels::from_bits(low.bits() | raised.bits()));
+            // kept from being put together anew in every step out of what both kinds have in common
+            core::hint::black_box(pulse.wrapping_add(spacing >> FRACTION))
+        };
         let (straight_up, diagonal_up) = (up(straight), up(diagonal));
-        let (mut time, spacing) = (times.time, times.spacing);
-        let mut at = time >> FRACTION;
-        // when the last diagonal step came
-        let mut diagonal_at = 0;
-        out.put(Event::new(low, at.wrapping_sub(self.began.cast_unsigned())));
-        let mut next = at;
+        let more = spacing << TO_TOP;
+        let mut fraction = first << TO_TOP;
         out.put_row(row.count, row.width, low, || {
-            at = next;
-            time = time.wrapping_add(spacing);
-            next = time >> FRACTION;
-            let raised = if turns() {
-                diagonal_at = at;
-                made.diagonals = made.diagonals.wrapping_add(1);
-                diagonal_up
-            } else {
-                straight_up
-            };
-            // the last one's clocks may be anything; one instruction joins both halves
-            Event::from_word(raised & 0xFFFF_0000 | next.wrapping_sub(at) & 0xFFFF)
+            let pulse = if turns.turns() { diagonal_up } else { straight_up };
+            let carry;
+            (fraction, carry) = fraction.overflowing_add(more);
+            Event::from_word(pulse.wrapping_add(u32::from(carry)))
         });
-        times.time = time;
+        let Turned { count: diagonals, last: turned } = turns.turned(row.count);
+        let made = Made { steps: row.count, diagonals };
+        let time = |number: u32| first.wrapping_add(spacing.wrapping_mul(number));
+        let (at, diagonal_at) = (time(row.count.wrapping_sub(1)) >> FRACTION, time(turned) >> FRACTION);
+        times.time = time(row.count);
         let fell = at.wrapping_add(row.width);
         self.began = fell.cast_signed();
-        made.steps = row.count;
         let width = row.width.cast_signed();
         let (straight_at, diagonal_at) = (at.cast_signed(), diagonal_at.cast_signed());
-        let any = made.diagonals != 0;
+        let any = diagonals != 0;
         if straight.step(Axis::X) {
             self.x.made(straight_at, width);
         } else if any && diagonal.step(Axis::X) {
@@ -449,6 +451,12 @@ impl Shaper {
         self.levels = levels;
         self.began = at;
     }
+}
+
+/// The word of a pulse of a row of this train.
+#[inline(always)]
+fn pulse_of<T: Train>(_: &T, raised: Levels) -> u32 {
+    T::pulse(raised).word()
 }
 
 /// An interval: between 1 and one tick by construction, so it never wraps.

@@ -100,10 +100,16 @@ pub trait Train {
     /// Takes the next event.
     fn put(&mut self, event: Event);
 
-    /// Takes a row of `pulses` pulses: `next` gives for each the levels with its pins raised and the clocks to the next
-    /// one's rise; its pins fall to `low` after `width` clocks, and nothing else happens meanwhile. The last one is taken up
-    /// to its fall only: when the next event comes is not known yet, and its clocks mean nothing. A queue may keep a
-    /// pulse in one word.
+    /// A pulse of a row with no clocks yet, its pins raised: what a queue marks such a pulse with is in it.
+    #[inline(always)]
+    fn pulse(raised: Levels) -> Event {
+        Event::new(raised, 0)
+    }
+
+    /// Takes a row of `pulses` pulses: `next` gives for each its [`pulse`](Self::pulse) with the clocks to the next one's
+    /// rise, below 2^15; its pins fall to `low` after `width` clocks, and nothing else happens meanwhile. The last one is
+    /// taken up to its fall only: when the next event comes is not known yet, and its clocks mean nothing. A queue may
+    /// keep a pulse in one word.
     #[inline(always)]
     fn put_row(&mut self, pulses: u32, width: u32, low: Levels, mut next: impl FnMut() -> Event) {
         let mut left = pulses;

@@ -3,7 +3,7 @@
 
 use interp_core::config::{AxisConfig, Config, Machine};
 use interp_core::curve::Step;
-use interp_core::curve::strides::Strides;
+use interp_core::curve::strides::{Strides, Turned, Turns};
 use interp_core::shaper::Shaper;
 use interp_core::times::{FRACTION, Times};
 use interp_core::train::Event;
@@ -49,6 +49,26 @@ fn machine(width: [u32; 2], space: u32, event_min: u32) -> Machine {
     Config { x: axis(width[0]), z: axis(width[1]), event_min_ns: event_min }.check().unwrap()
 }
 
+/// The recurrence of a part of it.
+struct Kinds<'r> {
+    run: &'r Run,
+    first: u32,
+    asked: u32,
+}
+
+impl Turns for Kinds<'_> {
+    fn turns(&mut self) -> bool {
+        self.asked += 1;
+        self.run.turns(self.asked - 1)
+    }
+
+    fn turned(&self, steps: u32) -> Turned {
+        assert_eq!(self.asked, self.first + steps);
+        let diagonal = || (0..steps).filter(|n| self.run.turns(self.first + n));
+        Turned { count: u32::try_from(diagonal().count()).unwrap(), last: diagonal().next_back().unwrap_or(77) }
+    }
+}
+
 impl Run {
     fn kinds(&self) -> [Step; 2] {
         let (x, z) = self.signs;
@@ -79,17 +99,9 @@ impl Run {
         let strides = Strides::new(straight, diagonal);
         let (mut n, mut rows) = (0, 0);
         while n < self.count {
-            let mut asked = n;
-            let made = shaper.run(
-                &mut times,
-                self.count - n,
-                &strides,
-                || {
-                    asked += 1;
-                    self.turns(asked - 1)
-                },
-                out,
-            );
+            let mut row = Kinds { run: self, first: n, asked: n };
+            let made = shaper.run(&mut times, self.count - n, &strides, &mut row, out);
+            let asked = row.asked;
             assert_eq!(asked, n + made.steps);
             assert_eq!(made.diagonals, (n..asked).map(|n| u32::from(self.turns(n))).sum());
             (n, rows) = (asked, rows + made.steps);

@@ -154,6 +154,11 @@ impl Train for Writer<'_> {
     }
 
     #[inline(always)]
+    fn pulse(raised: Levels) -> Event {
+        Event::from_word(Event::new(raised, FALLS).word())
+    }
+
+    #[inline(always)]
     fn put_row(&mut self, pulses: u32, width: u32, _: Levels, mut next: impl FnMut() -> Event) {
         let mut left = pulses;
         while left > 0 {
@@ -173,7 +178,7 @@ impl Train for Writer<'_> {
             let mut last = EMPTY;
             for place in places {
                 last = next().word();
-                place.store(last | FALLS, Ordering::Relaxed);
+                place.store(last, Ordering::Relaxed);
             }
             left = left.wrapping_sub(count);
             if room {
@@ -377,7 +382,7 @@ mod tests {
                 writer.put_row(u32::from(pulses), 60, Levels::from_bits(2), || {
                     n += 1;
                     let (levels, clocks) = pulse(n);
-                    event(levels, clocks)
+                    Event::from_word(Writer::pulse(Levels::from_bits(levels)).word() + clocks)
                 });
                 for n in 2..=pulses + 1 {
                     let (levels, clocks) = pulse(n);

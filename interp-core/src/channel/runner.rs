@@ -22,7 +22,7 @@ use crate::curve::line::LineWalker;
 #[cfg(feature = "methods")]
 use crate::curve::method::Method;
 use crate::curve::proportion::Proportion;
-use crate::curve::strides::Strides;
+use crate::curve::strides::{Strides, Turns};
 use crate::curve::{Step, Walker};
 use crate::math::{sine, to_u32};
 use crate::shaper::{Made, Shaper};
@@ -56,7 +56,7 @@ impl<O: Train> Sink<'_, O> {
 
     /// Up to `count` steps of two kinds, as far as they can be made in a row.
     #[inline(always)]
-    fn row(&mut self, times: &mut Times, count: u32, strides: &Strides, turns: impl FnMut() -> bool) -> Made {
+    fn row(&mut self, times: &mut Times, count: u32, strides: &Strides, turns: &mut impl Turns) -> Made {
         let count = if self.superposed.is_live() { self.superposed.room(times, count) } else { count };
         if count == 0 {
             return Made { steps: 0, diagonals: 0 };
@@ -187,7 +187,7 @@ impl LineRunner {
                 let mut made = 0;
                 let strides = self.walker.strides();
                 self.walker.row(|row| {
-                    made = sink.row(&mut times, due, &strides, || row.turns()).steps;
+                    made = sink.row(&mut times, due, &strides, row).steps;
                     made
                 });
                 if made == 0 {
@@ -357,7 +357,7 @@ fn row_in<W: Word>(walker: &mut ArcWalker, due: u32, times: &mut Times, sink: &m
     let strides = walker.strides();
     let mut steps = 0;
     walker.row::<W>(|row| {
-        let made = sink.row(times, due, &strides, || row.turns());
+        let made = sink.row(times, due, &strides, row);
         steps = made.steps;
         (made.steps, made.diagonals)
     });

@@ -10,7 +10,7 @@
 //! curve where there is a gap.
 
 use super::arc::Arc;
-use super::strides::Strides;
+use super::strides::{Strides, Turned, Turns};
 use super::{Step, Walker};
 use crate::math::to_u32;
 use crate::units::Axis;
@@ -368,6 +368,8 @@ impl ArcWalker {
             major_curve: W::from_wide(self.major_curve),
             minor_rise: W::from_wide(self.minor_rise),
             minor_curve: W::from_wide(self.minor_curve),
+            before: (W::from_wide(self.major_rise), W::from_wide(self.minor_rise)),
+            turned: W::from_wide(self.major_rise),
         };
         let (steps, diagonals) = make(&mut row);
         self.decision = row.decision.wide();
@@ -433,6 +435,8 @@ pub(crate) trait Word: Copy {
     fn plus(self, other: Self) -> Self;
     /// Whether it is 0 or above.
     fn is_reached(self) -> bool;
+    /// How often `step` was added to `from` to come here, below 2^11.
+    fn times_from(self, from: Self, step: Self) -> u32;
 }
 
 impl Word for i64 {
@@ -451,6 +455,13 @@ impl Word for i64 {
     #[inline(always)]
     fn is_reached(self) -> bool {
         self >= 0
+    }
+    #[inline]
+    fn times_from(self, from: Self, step: Self) -> u32 {
+        let (all, one) = (self.wrapping_sub(from).unsigned_abs(), step.unsigned_abs());
+        // cut so that the multiple fits 32 bits, a step keeps 20 of them: more than its remainders, one each, add up to
+        let cut = 32_u32.saturating_sub(all.leading_zeros());
+        to_u32(all.wrapping_shr(cut)).checked_div(to_u32(one.wrapping_shr(cut))).unwrap_or(0)
     }
 }
 
@@ -472,6 +483,10 @@ impl Word for i32 {
     fn is_reached(self) -> bool {
         self >= 0
     }
+    #[inline(always)]
+    fn times_from(self, from: Self, step: Self) -> u32 {
+        self.wrapping_sub(from).unsigned_abs().checked_div(step.unsigned_abs()).unwrap_or(0)
+    }
 }
 
 /// The recurrence of an [`ArcWalker`] during a row of steps.
@@ -481,26 +496,40 @@ pub(crate) struct ArcRow<W> {
     major_curve: W,
     minor_rise: W,
     minor_curve: W,
+    /// The rises at the row's start.
+    before: (W, W),
+    /// The major axis's rise at the last diagonal step.
+    turned: W,
 }
 
-impl<W: Word> ArcRow<W> {
-    /// Whether the next step is diagonal.
+impl<W: Word> Turns for ArcRow<W> {
     #[inline(always)]
-    pub(crate) fn turns(&mut self) -> bool {
+    fn turns(&mut self) -> bool {
         let turns = self.decision.is_reached();
         self.step(turns);
         turns
     }
 
+    #[inline(always)]
+    fn turned(&self, _: u32) -> Turned {
+        // the rises change evenly, so they tell how often they did
+        let count = self.minor_rise.times_from(self.before.1, self.minor_curve);
+        Turned { count, last: self.turned.times_from(self.before.0, self.major_curve) }
+    }
+}
+
+impl<W: Word> ArcRow<W> {
     /// Makes a step, diagonal or not.
     #[inline(always)]
     fn step(&mut self, diagonal: bool) {
+        let rise = self.major_rise;
         if diagonal {
+            self.turned = rise;
             self.decision = self.decision.plus(self.minor_rise);
             self.minor_rise = self.minor_rise.plus(self.minor_curve);
         }
-        self.decision = self.decision.plus(self.major_rise);
-        self.major_rise = self.major_rise.plus(self.major_curve);
+        self.decision = self.decision.plus(rise);
+        self.major_rise = rise.plus(self.major_curve);
     }
 }
 

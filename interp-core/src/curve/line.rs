@@ -6,7 +6,7 @@
 //!
 //! Source: J. E. Bresenham, IBM Systems Journal 4(1), 1965; the rule for halves is this project's.
 
-use super::strides::Strides;
+use super::strides::{Strides, Turned, Turns};
 use super::{Step, Walker};
 
 /// A straight line from (0, 0).
@@ -81,7 +81,7 @@ impl LineWalker {
     /// Makes steps in a row: `make` asks the recurrence for each whether it is diagonal, and tells how many it made.
     #[inline(always)]
     pub(crate) fn row(&mut self, make: impl FnOnce(&mut LineRow) -> u32) {
-        let mut row = LineRow { remainder: self.remainder, rise: self.rise, turn: self.turn };
+        let mut row = LineRow { remainder: self.remainder, rise: self.rise, turn: self.turn, turned: 0 };
         self.done = self.done.wrapping_add(make(&mut row));
         self.remainder = row.remainder;
     }
@@ -92,19 +92,28 @@ pub(crate) struct LineRow {
     remainder: u32,
     rise: u32,
     turn: u32,
+    /// Diagonal steps.
+    turned: u32,
 }
 
-impl LineRow {
-    /// Whether the next step is diagonal.
+impl Turns for LineRow {
     #[inline(always)]
-    pub(crate) const fn turns(&mut self) -> bool {
+    fn turns(&mut self) -> bool {
         // every figure is below 2^30 and a remainder below 2^30: sums stay under 2^31
         self.remainder = self.remainder.wrapping_add(self.rise);
         let turns = self.remainder >= self.turn;
         if turns {
             self.remainder = self.remainder.wrapping_sub(self.turn);
+            self.turned = self.turned.wrapping_add(1);
         }
         turns
+    }
+
+    #[inline(always)]
+    fn turned(&self, steps: u32) -> Turned {
+        // a diagonal step leaves less than a rise, and each straight one adds one
+        let since = self.remainder.checked_div(self.rise).unwrap_or(0);
+        Turned { count: self.turned, last: steps.wrapping_sub(1).wrapping_sub(since) }
     }
 }
 

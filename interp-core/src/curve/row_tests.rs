@@ -2,18 +2,34 @@
 
 use super::Walker;
 use super::arc_walker::ArcWalker;
+use super::line::Line;
 use super::prepare_arc::{Metric, Prepared, Reach};
+use super::strides::{Turned, Turns};
 use crate::units::{Lattice, PulseSize, Sense};
 use proptest::prelude::*;
+
+/// Asks for so many steps, and compares what the row says of them; the diagonal ones.
+fn ask(row: &mut impl Turns, count: u32) -> u32 {
+    let (mut turned, asked) = (Turned::default(), count.min(2047));
+    for number in 0..asked {
+        if row.turns() {
+            turned = Turned { count: turned.count + 1, last: number };
+        }
+    }
+    let said = row.turned(asked);
+    assert_eq!(said.count, turned.count);
+    assert!(turned.count == 0 || said == turned, "{said:?} {turned:?}");
+    turned.count + (asked..count).map(|_| u32::from(row.turns())).sum::<u32>()
+}
 
 /// One row of at most `most` steps, in the width that the walker says.
 fn row(walker: &mut ArcWalker, most: u32) -> u32 {
     let count = walker.left_in_row().min(most);
     let narrow = walker.is_narrow();
     if count > 0 && narrow {
-        walker.row::<i32>(|row| (count, (0..count).map(|_| u32::from(row.turns())).sum()));
+        walker.row::<i32>(|row| (count, ask(row, count)));
     } else if count > 0 {
-        walker.row::<i64>(|row| (count, (0..count).map(|_| u32::from(row.turns())).sum()));
+        walker.row::<i64>(|row| (count, ask(row, count)));
     }
     count
 }
@@ -79,5 +95,19 @@ proptest! {
         let sizes = sizes.map(|size| (size, 1));
         compare(sizes, end, at, sense, Reach::Long, most);
         compare(sizes, end, at, sense, Reach::Short, most);
+    }
+
+    /// What a line's row says of itself.
+    #[test]
+    fn a_line_s_row_tells_what_turned(x in -3000_i32..3000, z in -3000_i32..3000, most in 1_u32..400) {
+        let Some(line) = Line::new(x, z) else { return Ok(()) };
+        let mut walker = line.walk();
+        while walker.left() > 0 {
+            let count = walker.left().min(most);
+            walker.row(|row| {
+                ask(row, count);
+                count
+            });
+        }
     }
 }

@@ -9,6 +9,23 @@ const fn raised(step: Step) -> Levels {
     Levels::LOW.with_step(Axis::X, step.x != 0).with_step(Axis::Z, step.z != 0)
 }
 
+/// What turned in a row.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Turned {
+    /// Diagonal steps.
+    pub count: u32,
+    /// The last one, from 0; any number where there was none.
+    pub last: u32,
+}
+
+/// The recurrence of a row of steps, made for the loop that runs it: what else is asked of it is told at its end.
+pub trait Turns {
+    /// Whether the next step is diagonal.
+    fn turns(&mut self) -> bool;
+    /// What turned of the `steps` steps asked so far, below 2^11.
+    fn turned(&self, steps: u32) -> Turned;
+}
+
 /// A straight step moves the major axis, a diagonal one both.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Strides {
