@@ -17,6 +17,11 @@ pub struct Pace {
     pub accel: i64,
 }
 
+/// Whether a value is at most `most` in magnitude.
+const fn within(value: i64, most: i64) -> bool {
+    value.wrapping_add(most).cast_unsigned() <= most.wrapping_mul(2).cast_unsigned()
+}
+
 /// A follower.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Follower {
@@ -55,10 +60,16 @@ impl Follower {
     /// the next, slower by `a`, is such a one again.
     pub fn follow(&mut self, target: i64, pace: &Pace) -> i32 {
         let distance = target.wrapping_sub(self.place);
-        if distance == 0 && self.speed == 0 {
+        if self.rests_at(target) {
             return 0;
         }
         let before = self.pulses();
+        let (near, change) = (pace.accel.min(pace.speed), distance.wrapping_sub(self.speed));
+        if within(distance, near) && within(change, pace.accel) {
+            // the usual tick of one that follows closely: what the rest comes to as well
+            (self.place, self.speed) = (target, distance);
+            return self.pulses().wrapping_sub(before);
+        }
         let (accel, away) = (pace.accel, distance.unsigned_abs());
         let most = if away <= accel.unsigned_abs() {
             away
@@ -71,6 +82,12 @@ impl Follower {
         self.speed = wanted.max(self.speed.wrapping_sub(accel)).min(self.speed.wrapping_add(accel));
         self.place = self.place.wrapping_add(self.speed);
         self.pulses().wrapping_sub(before)
+    }
+
+    /// Whether it stands at `target`.
+    #[inline]
+    pub const fn rests_at(&self, target: i64) -> bool {
+        self.place == target && self.speed == 0
     }
 
     /// Stops where it is, from any speed.

@@ -197,7 +197,9 @@ impl AxisCompensation {
     }
 
     fn tick(&mut self, moved: i32, position: i32) -> i32 {
-        if !self.plan.on {
+        // where neither the slide nor the screw's length changes, the target stays
+        let still = moved == 0 && self.thermal.is_steady() && self.follower.rests_at(self.target);
+        if !self.plan.on || still {
             return 0;
         }
         self.backlash.moved(moved);

@@ -19,12 +19,14 @@ pub struct Thermal {
     /// Relative change of length: wanted, and in force.
     goal: i64,
     ratio: i64,
+    /// No tick has seen the last temperature yet.
+    new: bool,
 }
 
 impl Thermal {
     /// At the temperature of reference; `expansion` in nm a metre a kelvin, `origin` in pulses.
     pub const fn new(expansion: u32, origin: i32) -> Self {
-        Self { expansion: expansion as i64, origin, goal: 0, ratio: 0 }
+        Self { expansion: expansion as i64, origin, goal: 0, ratio: 0, new: true }
     }
 
     /// Other figures; [`heat`](Self::heat) has to follow.
@@ -37,13 +39,24 @@ impl Thermal {
         let warmer = i64::from(warmer.clamp(-200_000, 200_000));
         // 1e-12 of a length: times 2^36 / 1e12; the product is below 2^53
         self.goal = self.expansion.wrapping_mul(warmer).wrapping_mul(68_719) / 1_000_000;
+        self.new = true;
         if at_once {
             self.ratio = self.goal;
         }
     }
 
+    /// Whether the screw is as long as its temperature says, and was in the last tick.
+    #[inline]
+    pub const fn is_steady(&self) -> bool {
+        self.ratio == self.goal && !self.new
+    }
+
     /// A tick goes by.
     pub fn tick(&mut self) {
+        if self.is_steady() {
+            return;
+        }
+        self.new = false;
         self.ratio = self.ratio.wrapping_add(self.goal.wrapping_sub(self.ratio).clamp(STEP.wrapping_neg(), STEP));
     }
 
