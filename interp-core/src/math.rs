@@ -159,6 +159,26 @@ pub(crate) const fn divided(dividend: u32, divisor: u32) -> (u32, u32) {
     }
 }
 
+/// `value >> bits` for `bits` from 0 to 31, in place: the compiler calls a function for shifts of 64 bits where it minds
+/// space.
+#[inline(always)]
+pub(crate) const fn shifted(value: u64, bits: u32) -> u64 {
+    #[expect(clippy::cast_possible_truncation, reason = "the halves")]
+    let (high, low) = ((value >> 32) as u32, value as u32);
+    // what comes down from the upper half; nothing where `bits` is 0
+    let down = (high << 1).wrapping_shl(31_u32.wrapping_sub(bits));
+    (high.wrapping_shr(bits) as u64) << 32 | (low.wrapping_shr(bits) | down) as u64
+}
+
+/// The same with the sign kept.
+#[inline(always)]
+pub(crate) const fn shifted_signed(value: i64, bits: u32) -> i64 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the halves")]
+    let (high, low) = ((value >> 32) as i32, value as u32);
+    let down = (high << 1).cast_unsigned().wrapping_shl(31_u32.wrapping_sub(bits));
+    (high.wrapping_shr(bits) as i64) << 32 | (low.wrapping_shr(bits) | down) as i64
+}
+
 /// Saturating conversion.
 pub const fn to_i64(value: i128) -> i64 {
     #[expect(clippy::cast_possible_truncation, reason = "clamped to the range")]
@@ -391,5 +411,16 @@ mod tests {
         }
         assert_eq!(scale(i128::MAX, 2, 1), i128::MAX);
         assert_eq!(scale(1, 1, 0), 0);
+    }
+    #[test]
+    fn shifts_in_place_are_shifts() {
+        for value in
+            [0, 1, 0x8000_0000, 0xFFFF_FFFF, 0x1_0000_0000, 0x1234_5678_9ABC_DEF0, 0xFEDC_BA98_7654_3210, u64::MAX]
+        {
+            for bits in 0..32 {
+                assert_eq!(shifted(value, bits), value >> bits);
+                assert_eq!(shifted_signed(value.cast_signed(), bits), value.cast_signed() >> bits);
+            }
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! A fixed ratio that lengths are multiplied by, prepared so that the foreground needs one 32-bit product.
 
-use crate::math::{to_u32, to_u64};
+use crate::math::{shifted, to_u32, to_u64};
 
 /// `length * factor`, the factor as a 31-bit mantissa: relative error below 2^-30.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub struct Proportion {
 }
 
 impl Proportion {
-    /// The ratio `numerator / denominator` for lengths up to `longest`. The ratio must be below 2^30, else it
+    /// The ratio `numerator / denominator` for lengths up to `longest`, below 2^63. The ratio must be below 2^30, else it
     /// saturates; a zero denominator makes the ratio zero.
     pub fn new(numerator: u64, denominator: u64, longest: u64) -> Self {
         let before = 64_u32.wrapping_sub(longest.leading_zeros()).saturating_sub(32);
@@ -36,8 +36,9 @@ impl Proportion {
     /// The product, rounded down.
     #[inline]
     pub fn of(self, length: u64) -> u64 {
-        let short = to_u32(length.wrapping_shr(u32::from(self.before)));
-        u64::from(short).wrapping_mul(u64::from(self.factor)).wrapping_shr(u32::from(self.after))
+        let (before, after) = (u32::from(self.before), u32::from(self.after));
+        let product = u64::from(to_u32(shifted(length, before))).wrapping_mul(u64::from(self.factor));
+        if after < 32 { shifted(product, after) } else { u64::from(to_u32(product >> 32).wrapping_shr(after)) }
     }
 }
 
