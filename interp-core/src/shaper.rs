@@ -172,9 +172,15 @@ impl Shaper {
         self.levels.plus(axis)
     }
 
-    /// Makes up to `count` steps that come evenly: each is straight, or diagonal where `turns` says so.
-    /// Makes none, or fewer, where a step touches a rule: such a step is for
-    /// [`step`](Self::step), to which all others come out the same.
+    /// Whether every direction pin is as these steps need it.
+    #[inline]
+    pub const fn faces(&self, strides: &Strides) -> bool {
+        strides.agree(self.levels)
+    }
+
+    /// Makes up to `count` steps that come evenly: each is straight, or diagonal where `turns` says so. Steps that touch a
+    /// rule end the row: where `singly`, the first of those is made, too, by itself, so that at least one step is made;
+    /// else it is for [`step`](Self::step), to which all others come out the same.
     ///
     /// Inside a row no rule is touched: pins are low and directions set; the first step is not before either axis is
     /// ready and an event may begin; all are spaced so that whatever one asks for is over before the next; the last
@@ -186,14 +192,43 @@ impl Shaper {
         count: u32,
         strides: &Strides,
         turns: &mut impl Turns,
+        singly: bool,
         out: &mut impl Train,
     ) -> Made {
-        let made = Made { steps: 0, diagonals: 0 };
+        let mut made = Made { steps: 0, diagonals: 0 };
         self.catch_up(out);
         if !strides.agree(self.levels) {
             self.face(strides, times.clock(), out);
         }
-        let Some(row) = self.row(times, count, strides, out) else { return made };
+        if let Some(row) = self.row(times, count, strides, out) {
+            made = self.make(&row, times, strides, turns, out);
+        }
+        if singly && made.steps < count {
+            let diagonal = turns.turns();
+            self.step_of(times.take(), strides, diagonal, out);
+            made.steps = made.steps.wrapping_add(1);
+            made.diagonals = made.diagonals.wrapping_add(u32::from(diagonal));
+        }
+        made
+    }
+
+    /// Makes one step of two kinds.
+    #[inline(never)]
+    fn step_of(&mut self, due: u32, strides: &Strides, diagonal: bool, out: &mut impl Train) {
+        let step = strides.step(diagonal);
+        self.step(due, step.x, step.z, out);
+    }
+
+    /// Makes a row.
+    #[inline(always)]
+    fn make(
+        &mut self,
+        row: &Row,
+        times: &mut Times,
+        strides: &Strides,
+        turns: &mut impl Turns,
+        out: &mut impl Train,
+    ) -> Made {
         let low = self.levels;
         let [straight, diagonal] = strides.raised;
         let (first, spacing) = (times.time, times.spacing);
@@ -214,7 +249,6 @@ impl Shaper {
             Event::from_word(pulse.wrapping_add(u32::from(carry)))
         });
         let Turned { count: diagonals, last: turned } = turns.turned(row.count);
-        let made = Made { steps: row.count, diagonals };
         let time = |number: u32| first.wrapping_add(spacing.wrapping_mul(number));
         let (at, diagonal_at) = (time(row.count.wrapping_sub(1)) >> FRACTION, time(turned) >> FRACTION);
         times.time = time(row.count);
@@ -233,7 +267,7 @@ impl Shaper {
         } else if any && diagonal.step(Axis::Z) {
             self.z.made(diagonal_at, width);
         }
-        made
+        Made { steps: row.count, diagonals }
     }
 
     /// Turns the directions that the steps to come need, as far as there is time before the next one, at `due`: an axis

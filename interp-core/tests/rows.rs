@@ -93,18 +93,19 @@ impl Run {
     }
 
     /// In rows as far as they go; gives the steps made so.
-    fn in_rows(&self, shaper: &mut Shaper, out: &mut impl FnMut(Event)) -> u32 {
+    fn in_rows(&self, shaper: &mut Shaper, singly: bool, out: &mut impl FnMut(Event)) -> u32 {
         let mut times = Times { time: self.time, spacing: self.spacing };
         let [straight, diagonal] = self.kinds();
         let strides = Strides::new(straight, diagonal);
         let (mut n, mut rows) = (0, 0);
         while n < self.count {
             let mut row = Kinds { run: self, first: n, asked: n };
-            let made = shaper.run(&mut times, self.count - n, &strides, &mut row, out);
+            let made = shaper.run(&mut times, self.count - n, &strides, &mut row, singly, out);
             let asked = row.asked;
             assert_eq!(asked, n + made.steps);
             assert_eq!(made.diagonals, (n..asked).map(|n| u32::from(self.turns(n))).sum());
             (n, rows) = (asked, rows + made.steps);
+            assert!(made.steps > 0 || !singly);
             if made.steps == 0 {
                 let step = self.kinds()[usize::from(self.turns(n))];
                 shaper.step(times.take(), step.x, step.z, out);
@@ -123,13 +124,14 @@ proptest! {
         widths in prop_oneof![Just([5000, 5000]), Just([1000, 1000]), Just([5000, 4000]), Just([1000, 9000])],
         space in prop_oneof![Just(5000_u32), Just(1000), Just(12_000)],
         event_min in prop_oneof![Just(2000_u32), Just(500), Just(7000)],
+        singly: bool,
     ) {
         let machine = machine(widths, space, event_min);
         let (mut single, mut rows) = (Shaper::new(&machine), Shaper::new(&machine));
         for tick in &ticks {
             let (mut one, mut other) = (Vec::new(), Vec::new());
             tick.singly(&mut single, &mut |event: Event| one.push(event));
-            tick.in_rows(&mut rows, &mut |event: Event| other.push(event));
+            tick.in_rows(&mut rows, singly, &mut |event: Event| other.push(event));
             prop_assert_eq!(&one, &other);
             prop_assert_eq!(&single, &rows);
         }
@@ -144,6 +146,6 @@ fn steps_inside_a_tick_come_in_rows() {
         Run { time: 100 << FRACTION, spacing: 150 << FRACTION, major_x: true, signs: (1, 1), turns: 0x5A5A, count: 79 };
     let mut shaper = Shaper::new(&machine);
     // the first tick turns the directions
-    run.in_rows(&mut shaper, &mut |_: Event| {});
-    assert_eq!(run.in_rows(&mut shaper, &mut |_: Event| {}), 79);
+    run.in_rows(&mut shaper, false, &mut |_: Event| {});
+    assert_eq!(run.in_rows(&mut shaper, false, &mut |_: Event| {}), 79);
 }

@@ -24,7 +24,7 @@ use crate::curve::method::Method;
 use crate::curve::proportion::Proportion;
 use crate::curve::strides::{Strides, Turns};
 use crate::curve::{Step, Walker};
-use crate::math::{sine, to_u32};
+use crate::math::{shifted_signed, sine, to_u32};
 use crate::shaper::{Made, Shaper};
 use crate::times::{PULSE, Stretch, Times};
 use crate::train::Train;
@@ -57,11 +57,12 @@ impl<O: Train> Sink<'_, O> {
     /// Up to `count` steps of two kinds, as far as they can be made in a row.
     #[inline(always)]
     fn row(&mut self, times: &mut Times, count: u32, strides: &Strides, turns: &mut impl Turns) -> Made {
-        let count = if self.superposed.is_live() { self.superposed.room(times, count) } else { count };
+        let live = self.superposed.is_live();
+        let count = if live { self.superposed.room(times, count, strides, self.shaper, self.out) } else { count };
         if count == 0 {
             return Made { steps: 0, diagonals: 0 };
         }
-        let made = self.shaper.run(times, count, strides, turns, self.out);
+        let made = self.shaper.run(times, count, strides, turns, !live, self.out);
         let (x, z) = strides.lead(made.steps, made.diagonals);
         self.position.x = self.position.x.wrapping_add(x);
         self.position.z = self.position.z.wrapping_add(z);
@@ -275,7 +276,7 @@ impl ArcRunner {
         let turned = self.walker.arc().timeline.angle.of(length.wrapping_sub(self.zone_from)).cast_signed();
         let place = sine(self.angle.wrapping_add(turned)).wrapping_mul(self.radius);
         // 30 fraction bits of the sine go; the shift brings the cut-off bits back
-        place.wrapping_shr(30_u32.wrapping_sub(self.radius_shift))
+        shifted_signed(place, 30_u32.wrapping_sub(self.radius_shift))
     }
 
     #[inline]

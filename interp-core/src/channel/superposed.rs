@@ -15,6 +15,7 @@
 
 use crate::config::TICK_CLOCKS;
 use crate::curve::Step;
+use crate::curve::strides::Strides;
 use crate::shaper::Shaper;
 use crate::times::{FRACTION, Times};
 use crate::train::Train;
@@ -101,7 +102,12 @@ impl Superposed {
     }
 
     /// Adds these signed pulses of X and Z in the tick that begins.
+    #[inline]
     pub fn begin(&mut self, x: i32, z: i32) {
+        // nothing is left of the tick before
+        if x == 0 && z == 0 {
+            return;
+        }
         self.x.begin(x);
         self.z.begin(z);
         self.live |= x != 0 || z != 0;
@@ -114,9 +120,24 @@ impl Superposed {
     }
 
     /// How many of `count` steps of the program, due at `times`, come before anything is added and touch nothing that is
-    /// owed: those may be made past it.
+    /// owed: those may be made past it. What is due before the first of them is made here.
     #[cold]
-    pub fn room(&self, times: &Times, count: u32) -> u32 {
+    pub fn room(
+        &mut self,
+        times: &Times,
+        count: u32,
+        strides: &Strides,
+        shaper: &mut Shaper,
+        out: &mut impl Train,
+    ) -> u32 {
+        let first = times.time >> FRACTION;
+        if self.next().is_some_and(|next| next >> FRACTION <= first) {
+            self.until(first, shaper, out);
+            // a step that would turn an axis round again is offered to what was added
+            if !shaper.faces(strides) {
+                return 0;
+            }
+        }
         if self.x.owed != 0 || self.z.owed != 0 {
             return 0;
         }
