@@ -153,6 +153,17 @@ mod app {
         )
     }
 
+    /// Whether a mark was set, and takes it away. Only one task takes a mark, and a mark set once more in between is the
+    /// same mark; so nothing is exchanged at once, which costs more.
+    #[inline]
+    fn taken(mark: &AtomicBool) -> bool {
+        let set = mark.load(Relaxed);
+        if set {
+            mark.store(false, Relaxed);
+        }
+        set
+    }
+
     /// Makes something large where it stays. Out of line, so that what passes over the stack is there for the call only.
     #[inline(never)]
     fn make<T>(place: &'static mut MaybeUninit<T>, new: impl FnOnce() -> T) -> &'static mut T {
@@ -190,7 +201,7 @@ mod app {
         } = cx.local;
         width.set(foreground.pulse_width()); // of the tick that is being played
         let faults = Faults { underruns: train.underruns(), overruns: train.overruns(), late: LATE.load(Relaxed) };
-        foreground.watch(faults, STRUCK.swap(false, Relaxed) || contact.is_open());
+        foreground.watch(faults, taken(&STRUCK) || contact.is_open());
         bench.due(foreground.state(), &mut |command| foreground.obey(command));
         let report = foreground.tick(train);
         train.publish();
@@ -200,7 +211,7 @@ mod app {
         if STRUCK.load(Relaxed) {
             drives.off(); // the emergency task came between
         }
-        if heartbeat.beat(ALIVE.swap(false, Relaxed), report.speed) {
+        if heartbeat.beat(taken(&ALIVE), report.speed) {
             watchdog.feed();
         }
         bench.saw(&report, faults);

@@ -54,7 +54,7 @@ impl<O: Train> Sink<'_, O> {
         self.position.z = self.position.z.wrapping_add(i32::from(step.z));
     }
 
-    /// Up to `count` steps of two kinds, as far as they can be made in a row.
+    /// Up to `count` steps of two kinds, as far as they can be made in a row; the position has to be [moved](Self::moved).
     #[inline(always)]
     fn row(&mut self, times: &mut Times, count: u32, strides: &Strides, turns: &mut impl Turns) -> Made {
         let live = self.superposed.is_live();
@@ -62,11 +62,14 @@ impl<O: Train> Sink<'_, O> {
         if count == 0 {
             return Made { steps: 0, diagonals: 0 };
         }
-        let made = self.shaper.run(times, count, strides, turns, !live, self.out);
-        let (x, z) = strides.lead(made.steps, made.diagonals);
+        self.shaper.run(times, count, strides, turns, !live, self.out)
+    }
+
+    /// What a row leads by.
+    #[inline(always)]
+    fn moved(&mut self, (x, z): (i32, i32)) {
         self.position.x = self.position.x.wrapping_add(x);
         self.position.z = self.position.z.wrapping_add(z);
-        made
     }
 }
 
@@ -185,12 +188,14 @@ impl LineRunner {
             let mut due = lines(self.next, to).min(self.walker.left());
             self.next = further(self.next, due);
             while due > 0 {
-                let mut made = 0;
+                let mut row = Made { steps: 0, diagonals: 0 };
                 let strides = self.walker.strides();
-                self.walker.row(|row| {
-                    made = sink.row(&mut times, due, &strides, row).steps;
-                    made
+                self.walker.row(|turns| {
+                    row = sink.row(&mut times, due, &strides, turns);
+                    row.steps
                 });
+                sink.moved(strides.lead(row.steps, row.diagonals));
+                let mut made = row.steps;
                 if made == 0 {
                     let Some(step) = self.walker.next_step() else { break };
                     sink.step(times.take(), step);
@@ -357,11 +362,12 @@ pub(super) fn row(walker: &mut ArcWalker, due: u32, times: &mut Times, sink: &mu
 fn row_in<W: Word>(walker: &mut ArcWalker, due: u32, times: &mut Times, sink: &mut Sink<'_, impl Train>) -> u32 {
     let strides = walker.strides();
     let mut steps = 0;
-    walker.row::<W>(|row| {
+    let lead = walker.row::<W>(|row| {
         let made = sink.row(times, due, &strides, row);
         steps = made.steps;
         (made.steps, made.diagonals)
     });
+    sink.moved(lead);
     steps
 }
 

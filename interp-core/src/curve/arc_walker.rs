@@ -359,9 +359,9 @@ impl ArcWalker {
     }
 
     /// Makes steps in a row, at most [`left_in_row`](Self::left_in_row): `make` asks the recurrence for each whether it
-    /// is diagonal, and tells how many it made and how many of these were diagonal.
+    /// is diagonal, and tells how many it made and how many of these were diagonal. Returns where they lead, X and Z.
     #[inline(always)]
-    pub(crate) fn row<W: Word>(&mut self, make: impl FnOnce(&mut ArcRow<W>) -> (u32, u32)) {
+    pub(crate) fn row<W: Word>(&mut self, make: impl FnOnce(&mut ArcRow<W>) -> (u32, u32)) -> (i32, i32) {
         let mut row = ArcRow {
             decision: W::from_wide(self.decision),
             major_rise: W::from_wide(self.major_rise),
@@ -380,6 +380,7 @@ impl ArcWalker {
         let (x, z) = self.strides.lead(steps, diagonals);
         (self.x, self.z) = (self.x.wrapping_add(x), self.z.wrapping_add(z));
         self.target = (self.x, self.z);
+        (x, z)
     }
 
     /// Gives the next steps of the octant, at most [`left_in_row`](Self::left_in_row).
