@@ -48,8 +48,9 @@ const fn part(value: u32, clocks: u32) -> u32 {
 /// What an arc's curvature does to the speed.
 #[derive(Copy, Clone)]
 struct Bend {
-    /// `a R`, the squared speed at which turning takes all acceleration.
+    /// `a R`, the squared speed at which turning takes all acceleration, less so many low bits that it fits.
     full: u64,
+    cut: u32,
     /// `R`, nm with 12 fraction bits.
     radius: u64,
     /// From a length to the angle that it turns, 30 fraction bits.
@@ -66,6 +67,7 @@ struct Heading {
 
 impl Bend {
     fn heading(&self, squared: u64) -> Heading {
+        let squared = squared.wrapping_shr(self.cut);
         if squared == 0 {
             return Heading { sine: 0, cosine: RADIAN_Q30 };
         }
@@ -77,6 +79,11 @@ impl Bend {
 
     /// `a R sin(2 s / R + asin(w_end / a R))`, at most `a R`.
     fn reachable(&self, distance: u64, exit: Heading) -> u64 {
+        self.cut_off(distance, exit).min(UNLIMITED >> self.cut).wrapping_shl(self.cut)
+    }
+
+    /// That, less the bits that are cut off.
+    fn cut_off(&self, distance: u64, exit: Heading) -> u64 {
         // a quarter turn of the argument is reached at s = 0.785 R
         if distance >= self.radius {
             return self.full;
@@ -109,8 +116,13 @@ impl Motion {
             #[cfg(feature = "methods")]
             Curve::ClassicLine(..) => return None,
         };
-        let full = u64::from(self.accel).saturating_mul(radius);
-        (full >> 6 < square(self.limit)).then_some(Bend { full, radius, angle })
+        // more than 64 bits where R is large, as with 1 m and 1 m/s2
+        let (accel, mask) = (u64::from(self.accel), u64::from(u32::MAX));
+        let low = accel.wrapping_mul(radius & mask);
+        let high = accel.wrapping_mul(radius >> 32).wrapping_add(low >> 32);
+        let cut = 64_u32.wrapping_sub((high >> 32).leading_zeros());
+        let full = high.wrapping_shl(32_u32.wrapping_sub(cut)) | (low & mask).wrapping_shr(cut);
+        (full >> 6 < square(self.limit).wrapping_shr(cut)).then_some(Bend { full, cut, radius, angle })
     }
 
     /// The acceleration along the path where turning takes none, or next to none.
