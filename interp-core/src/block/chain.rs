@@ -3,7 +3,8 @@
 //! A [`Chain`] divides the curve into chords ([`Chords`]) and makes a line motion of each. It runs in the background and
 //! holds a parameter and one motion, so a curve of any length takes the same memory.
 //!
-//! * **Where.** A chord leaves the curve by at most 3/8 of a coarser pulse. Its ends are rounded, which moves the major
+//! * **Where.** A chord leaves the curve by at most 3/8 of a finer pulse: of the finer one, since the other axis's pulses
+//!   would show the kinks between longer chords as jumps of its speed. Its ends are rounded, which moves the major
 //!   coordinate of a point by up to 1/2 and the minor one, with the walk's own 1/2, by up to 1: sqrt(5)/2 pulses. So the
 //!   steps stay within 1.493 coarser pulses of the curve. Chords whose ends round to one lattice point are joined.
 //! * **When.** A motion's length is that of the curve between the unrounded ends, not that of the rounded chord. So the
@@ -14,8 +15,9 @@
 //!   and what it takes at the largest speed, c = v^2 / R, leaves `sqrt(a^2 - c^2)` for speeding up: 0.6 a at least.
 //!
 //! The five points at a chord's quarters give length and tangents: with the sums S4 and S2 of four and two chords the
-//! length is `S4 + (S4 - S2) / 3` (Richardson), and the tangent at an end is that of the parabola through the three
-//! points nearest to it, `-3 P0 + 4 P1 - P2`.
+//! length is `S4 + (S4 - S2) / 3` (Richardson), and the tangent at an end is that of the quartic through all five,
+//! `-25 P0 + 48 P1 - 36 P2 + 16 P3 - 3 P4`. A parabola through three of them is off by some p / 16 R, p being the pulse:
+//! at a small `max_jump` the joints of two chords would seem corners.
 
 use super::{Builder, Curve, Direction, Limited, Motion, Pace, Run, length};
 use crate::config::FRACTION_BITS;
@@ -86,7 +88,8 @@ impl<C: Sampled> Chain<C> {
             return Err(CurveRefusal::TooFine);
         }
         // the ends are whole nm: one is kept for that
-        let tolerance = to_u32((pulse >> FRACTION_BITS).wrapping_mul(3) / 8).saturating_sub(1);
+        let finer = to_u64(pulse_x.min(pulse_z)) >> FRACTION_BITS;
+        let tolerance = to_u32(finer.wrapping_mul(3) / 8).saturating_sub(1);
         Ok(Self {
             chords: Chords::new(curve, tolerance),
             pace,
@@ -268,15 +271,16 @@ impl Stretch {
         let fourfold =
             reach(p0, p1).wrapping_add(reach(p1, p2)).wrapping_add(reach(p2, p3)).wrapping_add(reach(p3, p4));
         let length = fourfold.wrapping_add(fourfold.saturating_sub(twice) / 3);
-        // the parabola through three points, `a` at its end
-        let tangent = |a: Place, b: Place, c: Place, sign: i64| {
-            let part = |a: i64, b: i64, c: i64| {
-                let (near, far) = (b.wrapping_sub(a).wrapping_mul(4), c.wrapping_sub(a));
-                i128::from(near.wrapping_sub(far).wrapping_mul(sign))
+        // of the quartic through the points, the first one at its end
+        let tangent = |points: [Place; 5], sign: i64| {
+            let part = |of: fn(Place) -> i64| {
+                let weighed = points.iter().zip([-25_i64, 48, -36, 16, -3]);
+                let sum = weighed.fold(0_i64, |sum, (point, weight)| sum.wrapping_add(of(*point).wrapping_mul(weight)));
+                i128::from(sum.wrapping_mul(sign))
             };
-            unit((part(a.0, b.0, c.0), part(a.1, b.1, c.1)))
+            unit((part(|point| point.0), part(|point| point.1)))
         };
-        let (entry, exit) = (tangent(p0, p1, p2, 1), tangent(p4, p3, p2, -1));
+        let (entry, exit) = (tangent(p, 1), tangent([p4, p3, p2, p1, p0], -1));
         let chord = unit((i128::from(p4.0.wrapping_sub(p0.0)), i128::from(p4.1.wrapping_sub(p0.1))));
         let (mut turn, mut most) = (0, (0, 0));
         if let (Some(entry), Some(exit)) = (entry, exit) {
