@@ -1,7 +1,8 @@
 //! An axis-parallel ellipse or parabola as motions, one at a time.
 //!
-//! [`Pieces`] cuts a prepared conic into parts inside an octant ([`ConicPiece`]). It runs in the background and holds one
-//! point of the curve.
+//! [`Pieces`] cuts the legs of a prepared conic into parts with a timeline ([`ConicPiece`]). It runs in the background and
+//! holds one point of the curve, which is on the major line of the walk's. What a step is off the curve by along the minor
+//! axis, at an end that is rounded as elsewhere, changes nothing in its time.
 //!
 //! From a point with the gradient (Gm, Gn), n being the minor axis, the curve at the major coordinate `m + u` is at `n + v`
 //! with
@@ -19,8 +20,8 @@ use super::chain::{angle_between, extent, unit};
 use super::{Builder, Curve, Direction, Limited, Motion, Pace, Run};
 use crate::curve::arc::Arc;
 use crate::curve::conic::{Conic, ConicRefusal, Ellipse, Parabola};
+use crate::curve::conic_part::ConicPart;
 use crate::curve::conic_piece::ConicPiece;
-use crate::curve::octants::minor_at;
 use crate::curve::prepare_arc::Reach;
 use crate::curve::proportion::Proportion;
 use crate::math::{Wide, root_wide, scale, to_i64, to_u32, to_u64};
@@ -54,9 +55,8 @@ pub struct Pieces {
     end: Point,
     pace: Pace,
     limited: Option<Limited>,
-    /// Octants done, and the present one.
-    visited: u8,
-    octant: u8,
+    /// The present leg.
+    leg: usize,
     /// Steps of it that are done.
     done: u32,
     /// Where the walk is, and the point of the curve there.
@@ -95,9 +95,9 @@ impl Pieces {
     }
 
     fn new(conic: Conic, end: Point, pace: Pace) -> Self {
-        let octant = conic.octants().octant;
-        let spot = exact(&conic, (0, 0));
-        Self { conic, end, pace, limited: None, visited: 0, octant, done: 0, at: (0, 0), spot, span: 64 }
+        let axis = conic.legs().first().map_or(Axis::X, |leg| Arc::major(leg.octant));
+        let spot = Spot::first(&conic, axis);
+        Self { conic, end, pace, limited: None, leg: 0, done: 0, at: (0, 0), spot, span: 64 }
     }
 
     /// The feed that an axis's maximum cut down most, on what was made so far.
@@ -107,97 +107,45 @@ impl Pieces {
 
     /// The next motion; `None` behind the last one.
     pub fn next_motion(&mut self, builder: &mut Builder) -> Option<Motion> {
-        let arc = *self.conic.octants();
-        loop {
-            if self.visited >= arc.pieces {
-                return None;
+        let leg = *self.conic.legs().get(self.leg)?;
+        let joint = if self.done == 0 { leg.joint } else { (0, 0) };
+        let left = leg.steps.wrapping_sub(self.done);
+        let mut steps = left.min(self.span).min(MOST_STEPS);
+        let (draft, to) = loop {
+            let to = self.conic.ahead(&leg, self.at, (joint, steps));
+            let draft = self.draft(leg.octant, to, builder);
+            if draft.holds || steps <= 1 {
+                break (draft, to);
             }
-            let index = usize::from(self.visited);
-            let all = arc.steps.get(index).copied().unwrap_or(0);
-            let joint = match index.checked_sub(1).and_then(|before| arc.joints.get(before)) {
-                Some(joint) if self.done == 0 => *joint,
-                _ => (0, 0),
-            };
-            let left = all.wrapping_sub(self.done);
-            if left == 0 && joint == (0, 0) {
-                self.leave(&arc);
-                continue;
-            }
-            let final_octant = self.visited.wrapping_add(1) == arc.pieces;
-            let mut steps = left.min(self.span).min(MOST_STEPS);
-            let (draft, to) = loop {
-                let ends = final_octant && steps == left;
-                let to = if ends { arc.end } else { self.lattice(joint, steps, &arc) };
-                let draft = self.draft(to, ends, builder);
-                if draft.holds || steps <= 1 {
-                    break (draft, to);
-                }
-                steps >>= 1;
-            };
-            self.span = steps.saturating_mul(2).max(8);
-            let last = final_octant && steps == left;
-            let motion = self.motion(&draft, (to, steps, joint), builder);
-            let motion = motion.map(|motion| Motion { continues: !last, ..motion });
-            (self.at, self.spot) = (to, draft.end);
-            self.done = self.done.wrapping_add(steps);
-            if self.done == all {
-                self.leave(&arc);
-            }
-            if last {
-                builder.at = self.end;
-            }
-            return motion;
+            steps >>= 1;
+        };
+        self.span = steps.saturating_mul(2).max(8);
+        let part = self.conic.part(&leg, self.at, (joint, steps));
+        let motion = self.motion(&draft, part, builder);
+        (self.at, self.spot) = (to, draft.end);
+        self.done = self.done.wrapping_add(steps);
+        if self.done == leg.steps {
+            (self.leg, self.done) = (self.leg.wrapping_add(1), 0);
         }
-    }
-
-    /// Goes on in the next octant.
-    fn leave(&mut self, arc: &Arc) {
-        self.visited = self.visited.wrapping_add(1);
-        self.octant = Arc::octant_after(self.octant, arc.sense);
-        self.done = 0;
-    }
-
-    /// Where the walk is after a joint and some steps.
-    fn lattice(&self, joint: (i8, i8), steps: u32, arc: &Arc) -> (i32, i32) {
-        let to = (self.at.0.wrapping_add(i32::from(joint.0)), self.at.1.wrapping_add(i32::from(joint.1)));
-        if steps == 0 {
-            return to;
+        let last = self.leg == self.conic.legs().len();
+        if last {
+            builder.at = self.end;
         }
-        let (sign_x, sign_z) = Arc::signs(self.octant, arc.sense);
-        let conic = [arc.a, arc.b, arc.c, arc.d].map(i128::from);
-        let line = |from: i32, sign: i8| from.wrapping_add(i32::from(sign).wrapping_mul(steps.cast_signed()));
-        match Arc::major(self.octant) {
-            Axis::X => (line(to.0, sign_x), minor_at(conic, self.octant, line(to.0, sign_x))),
-            Axis::Z => (minor_at(conic, self.octant, line(to.1, sign_z)), line(to.1, sign_z)),
-        }
+        motion.map(|motion| Motion { continues: !last, ..motion })
     }
 
     /// The motion over a part that was found short enough.
-    fn motion(
-        &mut self,
-        draft: &Draft,
-        (to, steps, joint): ((i32, i32), u32, (i8, i8)),
-        builder: &mut Builder,
-    ) -> Option<Motion> {
-        let arc = self.conic.octants();
-        let end = (to.0.wrapping_sub(self.at.0), to.1.wrapping_sub(self.at.1));
+    fn motion(&mut self, draft: &Draft, part: ConicPart, builder: &mut Builder) -> Option<Motion> {
         let (length, radius) = (draft.length, draft.radius);
         let piece = ConicPiece {
-            conic: [arc.a, arc.b, arc.c, arc.d],
-            centre: arc.timeline.centre,
-            from: self.at,
-            end,
-            steps,
-            joint,
-            octant: self.octant,
-            sense: arc.sense,
+            part,
             cubic: draft.cubic,
             share: Proportion::new(1 << 30, length, length),
             radius,
             angle: Proportion::new(1 << 30, radius, length.min(radius)),
         };
-        builder.lattice.x = builder.lattice.x.wrapping_add(end.0);
-        builder.lattice.z = builder.lattice.z.wrapping_add(end.1);
+        builder.lattice.x = builder.lattice.x.wrapping_add(part.end.0);
+        builder.lattice.z = builder.lattice.z.wrapping_add(part.end.1);
         let by_axis = builder.speed_limit(draft.extent);
         let accel = builder.machine.x.accel.min(builder.machine.z.accel);
         // v^2 = 0.998 a R
@@ -214,17 +162,18 @@ impl Pieces {
         builder.chained(Curve::Conic(piece), &run, self.pace, &mut self.limited)
     }
 
-    /// Looks at the part up to a lattice point; where it is not the conic's end, up to the curve on its major line.
-    fn draft(&self, to: (i32, i32), ends: bool, builder: &Builder) -> Draft {
-        let sense = self.conic.octants().sense;
-        let axis = Arc::major(self.octant);
-        let (sign_x, sign_z) = Arc::signs(self.octant, sense);
+    /// Looks at the part up to the curve on a lattice point's major line.
+    fn draft(&self, octant: u8, to: (i32, i32), builder: &Builder) -> Draft {
+        let axis = Arc::major(octant);
+        let (sign_x, sign_z) = Arc::signs(octant, self.conic.sense);
         let pulses = (builder.machine.x.pulse, builder.machine.z.pulse);
         let (line, begun, line_from, sign, pulse) = match axis {
             Axis::X => (to.0, self.spot.place.0, self.at.0, sign_x, pulses.0),
             Axis::Z => (to.1, self.spot.place.1, self.at.1, sign_z, pulses.1),
         };
-        let way = (i128::from(line) << 32).wrapping_sub(begun);
+        // none back, where an end is so near a border of octants that its line lies before that
+        let ahead = (i128::from(line) << 32).wrapping_sub(begun).wrapping_mul(i128::from(sign)).max(0);
+        let way = ahead.wrapping_mul(i128::from(sign));
         let eighths = |from: Spot, way: i128| {
             let mut spots = [from; 9];
             for (eighths, spot) in (0_i128..).zip(&mut spots) {
@@ -232,10 +181,7 @@ impl Pieces {
             }
             spots
         };
-        let mut spots = eighths(self.spot, way);
-        if ends {
-            spots[8] = exact(&self.conic, to);
-        }
+        let spots = eighths(self.spot, way);
         let mut lengths = Lengths::new(&spots, pulses);
         let coarse = lengths.more.unsigned_abs() > lengths.whole() >> CONVERGED;
         if coarse {
@@ -311,17 +257,32 @@ fn value([a, b, c, d]: [i64; 4], part: i64) -> i64 {
     a.wrapping_add(times(b.wrapping_add(times(c.wrapping_add(times(d))))))
 }
 
-/// A lattice point that the conic passes.
-fn exact(conic: &Conic, (x, z): (i32, i32)) -> Spot {
-    let [a, b, c, d] = conic.fine().map(i128::from);
-    let (x, z) = (i128::from(x), i128::from(z));
-    let along = |weight: i128, at: i128, centre: i128| weight.times(at).wrapping_mul(2).wrapping_sub(centre) << FINER;
-    Spot { place: (x << 32, z << 32), gradient: (along(a, x, c), along(b, z, d)) }
+/// From a point along the minor axis to where `F`, 32 fraction bits, is 0: the way, 32 fraction bits, and the gradient there;
+/// the weight and the gradient of the axis given.
+fn sideways((an, gn): (i128, i128), product: i128) -> (i128, i128) {
+    let square = gn.times(gn).wrapping_sub(an.wrapping_mul(4).times(product >> 32)).max(0);
+    let root = i128::from(root_wide(square.unsigned_abs())).wrapping_mul(if gn < 0 { -1 } else { 1 });
+    let sum = gn.wrapping_add(root);
+    (scale(product.wrapping_mul(if sum < 0 { 2 } else { -2 }), 1, sum.saturating_abs()), root)
 }
 
 impl Spot {
+    /// The point of the curve on the start's line of a major axis.
+    fn first(conic: &Conic, axis: Axis) -> Self {
+        let [a, b, c, d, f] = conic.fine().map(|value| i128::from(value) << FINER);
+        let (an, gm, gn) = match axis {
+            Axis::X => (b, c.wrapping_neg(), d.wrapping_neg()),
+            Axis::Z => (a, d.wrapping_neg(), c.wrapping_neg()),
+        };
+        let (sideways, root) = sideways((an, gn), f << 32);
+        match axis {
+            Axis::X => Self { place: (0, sideways), gradient: (gm, root) },
+            Axis::Z => Self { place: (sideways, 0), gradient: (root, gm) },
+        }
+    }
+
     /// The point of the curve whose major coordinate is `way` further, 32 fraction bits.
-    fn further(&self, [a, b, ..]: [i64; 4], axis: Axis, way: i128) -> Self {
+    fn further(&self, [a, b, ..]: [i64; 5], axis: Axis, way: i128) -> Self {
         let (a, b) = (i128::from(a) << FINER, i128::from(b) << FINER);
         let (am, an, gm, gn) = match axis {
             Axis::X => (a, b, self.gradient.0, self.gradient.1),
@@ -329,10 +290,7 @@ impl Spot {
         };
         let lift = am.times(way) >> 32;
         let product = gm.wrapping_add(lift).times(way);
-        let square = gn.times(gn).wrapping_sub(an.wrapping_mul(4).times(product >> 32)).max(0);
-        let root = i128::from(root_wide(square.unsigned_abs())).wrapping_mul(if gn < 0 { -1 } else { 1 });
-        let sum = gn.wrapping_add(root);
-        let sideways = scale(product.wrapping_mul(if sum < 0 { 2 } else { -2 }), 1, sum.saturating_abs());
+        let (sideways, root) = sideways((an, gn), product);
         let gradient = gm.wrapping_add(lift.wrapping_mul(2));
         let (x, z) = self.place;
         match axis {

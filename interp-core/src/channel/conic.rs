@@ -36,7 +36,7 @@ impl ConicRunner {
 
     /// At the end of a part of this length.
     pub(super) fn at_end(piece: &ConicPiece, length: u64) -> Self {
-        let (walker, made) = (piece.walk_from_end(), piece.gap().wrapping_add(piece.steps));
+        let (walker, made) = (piece.walk_from_end(), piece.gap().wrapping_add(piece.steps()));
         Self { walker, made, at: piece.coordinate(length), ..Self::new(piece) }
     }
 

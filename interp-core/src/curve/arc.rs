@@ -166,8 +166,8 @@ impl Arc {
     }
 
     /// The in-between point on the way over a gap from `from` to `to`, two lattice points that are not neighbours:
-    /// of the neighbours of `from` that come nearer to `to`, the one nearest the curve.
-    pub(crate) fn bridge(&self, from: (i32, i32), to: (i32, i32)) -> (i32, i32) {
+    /// of the neighbours of `from` that come nearer to `to`, the one nearest the curve, whose `F` is `offset` at (0, 0).
+    pub(crate) fn bridge(&self, from: (i32, i32), to: (i32, i32), offset: i64) -> (i32, i32) {
         let (gap_x, gap_z) = (to.0.wrapping_sub(from.0), to.1.wrapping_sub(from.1));
         let far = gap_x.unsigned_abs().max(gap_z.unsigned_abs());
         if far <= 1 {
@@ -182,7 +182,7 @@ impl Arc {
                 let left_x = gap_x.wrapping_sub(x).unsigned_abs();
                 let left_z = gap_z.wrapping_sub(z).unsigned_abs();
                 let point = (from.0.wrapping_add(x), from.1.wrapping_add(z));
-                let off = self.residual(point.0, point.1).unsigned_abs();
+                let off = self.residual(point.0, point.1).wrapping_add(offset).unsigned_abs();
                 if left_x.max(left_z) < far && off < least {
                     least = off;
                     best = point;

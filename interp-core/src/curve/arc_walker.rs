@@ -19,6 +19,8 @@ use crate::units::Axis;
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct ArcWalker {
     arc: Arc,
+    /// `F` at the point that coordinates count from.
+    offset: i64,
     /// Octants entered so far.
     piece: u8,
     octant: u8,
@@ -50,13 +52,14 @@ pub struct ArcWalker {
 impl Arc {
     /// A walker at the start.
     pub fn walk(&self) -> ArcWalker {
-        self.walk_from((0, 0))
+        self.walk_beside(0)
     }
 
-    /// A walker that begins at a lattice point of the curve, pulses from where coordinates count.
-    pub(crate) fn walk_from(&self, (x, z): (i32, i32)) -> ArcWalker {
+    /// A walker at the start, whose deviation is known: `F` there.
+    pub(crate) fn walk_beside(&self, offset: i64) -> ArcWalker {
         let mut walker = ArcWalker {
             arc: *self,
+            offset,
             piece: 0,
             octant: self.octant,
             done: 0,
@@ -69,9 +72,9 @@ impl Arc {
             strides: Strides::default(),
             minors: 0,
             narrow: false,
-            x,
-            z,
-            target: (x, z),
+            x: 0,
+            z: 0,
+            target: (0, 0),
         };
         walker.enter(0, self.octant);
         walker
@@ -79,19 +82,18 @@ impl Arc {
 
     /// A walker at the end.
     pub fn walk_from_end(&self) -> ArcWalker {
-        self.walk_back_to((0, 0))
+        self.walk_back_beside(0)
     }
 
-    /// A walker at the end of a curve that begins at a lattice point.
-    pub(crate) fn walk_back_to(&self, from: (i32, i32)) -> ArcWalker {
-        let mut walker = self.walk_from(from);
-        let end = (from.0.wrapping_add(self.end.0), from.1.wrapping_add(self.end.1));
+    /// A walker at the end, where the start's deviation is known.
+    pub(crate) fn walk_back_beside(&self, offset: i64) -> ArcWalker {
+        let mut walker = self.walk_beside(offset);
         while walker.piece.wrapping_add(1) < self.pieces {
             walker.piece = walker.piece.wrapping_add(1);
             walker.octant = Self::octant_after(walker.octant, self.sense);
         }
-        (walker.x, walker.z) = end;
-        walker.stand_at_end_of_octant(end);
+        (walker.x, walker.z) = self.end;
+        walker.stand_at_end_of_octant(self.end);
         walker
     }
 
@@ -224,7 +226,7 @@ impl ArcWalker {
         // find the point before this one on the way from `last` to `target`
         let mut point = last;
         loop {
-            let next = self.arc.bridge(point, self.target);
+            let next = self.arc.bridge(point, self.target, self.offset);
             if next == (self.x, self.z) || next == point {
                 break;
             }
@@ -243,7 +245,7 @@ impl ArcWalker {
         if (self.x, self.z) == self.target {
             return None;
         }
-        let to = self.arc.bridge((self.x, self.z), self.target);
+        let to = self.arc.bridge((self.x, self.z), self.target, self.offset);
         Some(self.go(to))
     }
 
@@ -293,7 +295,7 @@ impl ArcWalker {
         let toward = if above { sn.wrapping_neg() } else { sn };
         let major_part = am.wrapping_mul(m).wrapping_sub(cm).wrapping_mul(m).wrapping_mul(4);
         let minor_part = an.wrapping_mul(n2).wrapping_sub(cn.wrapping_mul(2)).wrapping_mul(n2);
-        let four_f = major_part.wrapping_add(minor_part);
+        let four_f = major_part.wrapping_add(minor_part).wrapping_add(self.offset.wrapping_mul(4));
         let half = if sn < 0 { 1 } else { 0 };
         self.decision = toward.wrapping_mul(four_f).wrapping_sub(half);
         // F(m + s) - F(m) = a (2 s m + 1) - c s, fourfold

@@ -1,19 +1,21 @@
 //! Axis-parallel ellipse and parabola by minimum deviation: exact integer walks, both ways.
 //!
-//! On the lattice both are the conic that a circle is there, `F = a x^2 + b z^2 - c x - d z`, and so the walk of an
+//! On the lattice both are the conic that a circle is there, `F = a x^2 + b z^2 - c x - d z + f`, and so the walk of an
 //! [`Arc`](super::arc) serves them: an ellipse with semi-axes S_x, S_z has `a : b = (p_x S_z)^2 : (p_z S_x)^2`, and a
 //! parabola `x^2 = 2 p z` along Z has `a = p_x^2`, `b = 0`, `d = 2 p p_z` about its vertex. The ratio is exact where 55 bits
-//! hold the gradient, else the nearest. Both ends are rounded to the lattice and the curve is moved so that it passes
-//! through them: an ellipse along the chord, a parabola square to its axis.
+//! hold the gradient, else the nearest.
 //!
-//! An ellipse through two rounded ends is a little larger or smaller than the programmed one: by up to half a pulse at an
-//! end, and so by up to half a pulse times the ratio of its half axes elsewhere.
+//! The curve stays where it was programmed: moved or sized so that it passes through both rounded ends, a flat ellipse or a
+//! steep parabola would be off it elsewhere by half a pulse times its axes' ratio or its slope. So the ends are up to half
+//! a pulse off the curve each way, and the walk is [led](super::leads) to them.
 //!
-//! Where, not when: [`Pieces`](crate::block::Pieces) cuts a conic into parts that have a timeline.
+//! Where, and [part by part](super::conic_part) in which order; when is told by [`Pieces`](crate::block::Pieces), which
+//! cuts a conic into parts with a timeline.
 
 use super::arc::{Arc, Timeline};
-use super::arc_walker::ArcWalker;
-use super::octants::Octants;
+use super::conic_part::{Leg, MAX_LEGS};
+use super::leads::{Leads, Shape};
+use super::octants::{Octants, lowest, minor_at};
 use super::prepare_arc::Reach;
 use crate::math::{Wide, scale, to_i64};
 use crate::units::{Axis, Lattice, Length, PulseSize, Sense};
@@ -68,37 +70,69 @@ impl core::fmt::Display for ConicRefusal {
 /// A prepared ellipse or parabola.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Conic {
-    arc: Arc,
-    /// Its coefficients in figures as large as 64 bits bear.
+    /// `F = a x^2 + b z^2 - c x - d z + f`, coordinates from the start, without a common divisor.
+    conic: [i64; 5],
+    /// The same in figures as large as 64 bits bear.
     #[cfg(feature = "methods")]
-    fine: [i64; 4],
+    fine: [i64; 5],
+    /// Its centre, X and Z, pulses with 16 fraction bits.
+    centre: [i64; 2],
+    pub(crate) sense: Sense,
+    end: (i32, i32),
+    legs: [Leg; MAX_LEGS],
+    count: u8,
 }
 
 impl Conic {
-    /// A walker at the start.
-    pub fn walk(&self) -> ArcWalker {
-        self.arc.walk()
-    }
-
     /// The end, X then Z, pulses from the start.
     pub const fn end(&self) -> (i32, i32) {
-        self.arc.end()
+        self.end
     }
 
-    /// The octants that it visits.
-    #[cfg(feature = "methods")]
-    pub(crate) const fn octants(&self) -> &Arc {
-        &self.arc
+    /// What it is walked in.
+    pub(crate) fn legs(&self) -> &[Leg] {
+        self.legs.get(..usize::from(self.count)).unwrap_or(&[])
     }
 
     /// Its coefficients with gradients of up to 57 bits.
     #[cfg(feature = "methods")]
-    pub(crate) const fn fine(&self) -> [i64; 4] {
+    pub(crate) const fn fine(&self) -> [i64; 5] {
         self.fine
     }
 
+    /// Coefficients, `F` and centre with coordinates from another lattice point of the walk.
+    pub(crate) fn seen_from(&self, (x, z): (i32, i32)) -> ([i64; 4], i64, [i64; 2]) {
+        let [a, b, c, d, f] = self.conic;
+        let (x, z) = (i64::from(x), i64::from(z));
+        let along = |weight: i64, centre: i64, at: i64| weight.wrapping_mul(at).wrapping_sub(centre);
+        let (along_x, along_z) = (along(a, c, x), along(b, d, z));
+        // near the curve it fits, whatever its parts do
+        let offset = along_x.wrapping_mul(x).wrapping_add(along_z.wrapping_mul(z)).wrapping_add(f);
+        let moved = |weight: i64, along: i64, at: i64| weight.wrapping_mul(at).wrapping_add(along).wrapping_neg();
+        let centre = [self.centre[0].wrapping_sub(x << 16), self.centre[1].wrapping_sub(z << 16)];
+        ([a, b, moved(a, along_x, x), moved(b, along_z, z)], offset, centre)
+    }
+
+    /// Where the walk of a leg is after its joint and some steps from a point of it.
+    pub(crate) fn ahead(&self, leg: &Leg, from: (i32, i32), (joint, steps): ((i8, i8), u32)) -> (i32, i32) {
+        let to = (from.0.wrapping_add(i32::from(joint.0)), from.1.wrapping_add(i32::from(joint.1)));
+        if steps == 0 {
+            return to;
+        }
+        let (sign_x, sign_z) = Arc::signs(leg.octant, self.sense);
+        let line = |from: i32, sign: i8| from.wrapping_add(i32::from(sign).wrapping_mul(steps.cast_signed()));
+        let (x, z) = (line(to.0, sign_x), line(to.1, sign_z));
+        match (leg.shape, Arc::major(leg.octant)) {
+            (Shape::Diagonal, _) => (x, z),
+            (Shape::Straight, Axis::X) => (x, to.1),
+            (Shape::Straight, Axis::Z) => (to.0, z),
+            (Shape::Near, Axis::X) => (x, minor_at(self.conic.map(i128::from), leg.octant, x)),
+            (Shape::Near, Axis::Z) => (minor_at(self.conic.map(i128::from), leg.octant, z), z),
+        }
+    }
+
     fn new(octants: Option<Octants>) -> Result<Self, ConicRefusal> {
-        let octants = octants.ok_or(ConicRefusal::TooSmall)?;
+        let mut octants = octants.ok_or(ConicRefusal::TooSmall)?;
         // the walker asks for the centre only to know the far side of the curve; a parabola's is far away
         let centre = |weight: i128, twice: i128| {
             if weight == 0 {
@@ -108,15 +142,50 @@ impl Conic {
             }
         };
         let centre = [centre(octants.a, octants.c), centre(octants.b, octants.d)];
-        let timeline = Timeline { centre, ..Timeline::default() };
-        #[cfg(feature = "methods")]
-        let fine = [octants.a, octants.b, octants.c, octants.d].map(to_i64);
-        let arc = octants.arc(timeline).ok_or(ConicRefusal::TooSmall)?;
-        Ok(Self {
-            arc,
+        let arc = octants.arc(Timeline::default()).ok_or(ConicRefusal::TooSmall)?;
+        let fine = [octants.a, octants.b, octants.c, octants.d, octants.f].map(to_i64);
+        let mut made = Self {
+            conic: lowest(fine),
             #[cfg(feature = "methods")]
             fine,
-        })
+            centre,
+            sense: arc.sense,
+            end: arc.end,
+            legs: [Leg::default(); MAX_LEGS],
+            count: 0,
+        };
+        made.lay(&arc, octants.leads);
+        Ok(made)
+    }
+
+    /// Divides the octants into legs.
+    fn lay(&mut self, arc: &Arc, leads: Leads) {
+        let mut octant = arc.octant;
+        let mut at = (0, 0);
+        for piece in 0..arc.pieces {
+            let index = usize::from(piece);
+            let all = arc.steps.get(index).copied().unwrap_or(0);
+            let joint = index.checked_sub(1).and_then(|before| arc.joints.get(before)).copied().unwrap_or((0, 0));
+            let first = if piece == 0 { leads.start } else { (Shape::Near, 0) };
+            let last = if piece.wrapping_add(1) == arc.pieces { leads.end } else { (Shape::Near, 0) };
+            let near = all.saturating_sub(first.1).saturating_sub(last.1);
+            at = self.leg(Leg { from: at, joint: (0, 0), octant, steps: first.1, shape: first.0 });
+            at = self.leg(Leg { from: at, joint, octant, steps: near, shape: Shape::Near });
+            at = self.leg(Leg { from: at, joint: (0, 0), octant, steps: last.1, shape: last.0 });
+            octant = Arc::octant_after(octant, arc.sense);
+        }
+    }
+
+    /// Appends a leg, unless it is none; gives where it ends.
+    fn leg(&mut self, leg: Leg) -> (i32, i32) {
+        if leg.steps == 0 && leg.joint == (0, 0) {
+            return leg.from;
+        }
+        if let Some(slot) = self.legs.get_mut(usize::from(self.count)) {
+            *slot = leg;
+            self.count = self.count.wrapping_add(1);
+        }
+        self.ahead(&leg, leg.from, (leg.joint, leg.steps))
     }
 }
 
@@ -151,6 +220,15 @@ fn shortened(a: i128, b: i128, most: u32) -> (i128, i128) {
     let (a, b) = (a.quotient(p).unwrap_or(1), b.quotient(p).unwrap_or(1));
     let cut = bits(a.max(b)).saturating_sub(most);
     (a.wrapping_shr(cut).max(1), b.wrapping_shr(cut).max(1))
+}
+
+/// Fraction bits of a coordinate in pulses, and of its square.
+const FINE: u32 = 30;
+const SQUARED: u32 = 40;
+
+/// A weight times the square of a coordinate.
+fn raised(weight: i128, coordinate: i128) -> i128 {
+    weight.times(coordinate.squared() >> (2 * FINE - SQUARED))
 }
 
 /// Whether a deviation is more than what two pulses change it by.
@@ -198,12 +276,18 @@ impl Ellipse {
             weight.wrapping_add(half).wrapping_shr(excess).max(1).wrapping_shl(room)
         };
         let (a, b) = (fit(a), fit(b));
-        let ((ox, ux), (oz, uz)) = (pulses(x, self.centre.0, start.x), pulses(z, self.centre.1, start.z));
-        let (c, d) = (scale(a.wrapping_mul(2), ox, ux), scale(b.wrapping_mul(2), oz, uz));
         if self.is_off((x, z), start) || self.is_off((x, z), end) {
             return Err(ConicRefusal::OffCurve);
         }
-        Conic::new(Octants::through([a, b, c, d], to, (sense, reach)))
+        let ((ox, ux), (oz, uz)) = (pulses(x, self.centre.0, start.x), pulses(z, self.centre.1, start.z));
+        let (c, d) = (scale(a.wrapping_mul(2), ox, ux), scale(b.wrapping_mul(2), oz, uz));
+        // F is 0 where x or z alone is the half axis: f = a x^2 + b z^2 - a r_x^2; of the larger half axis, as a rounded
+        // ratio is off by more there
+        let (weight, half) =
+            if rx > rz { (a, scale(half_x, dx << FINE, nx)) } else { (b, scale(half_z, dz << FINE, nz)) };
+        let near = raised(a, scale(ox, 1 << FINE, ux)).wrapping_add(raised(b, scale(oz, 1 << FINE, uz)));
+        let f = scale(near.wrapping_sub(raised(weight, half)), 1, 1 << SQUARED);
+        Conic::new(Octants::beside([a, b, c, d, f], to, (sense, reach)))
     }
 
     /// Whether a lattice point is more than two pulses off the ellipse.
@@ -265,7 +349,8 @@ impl Parabola {
         // both gradients, 2 a u and e, below 2^56
         let size = bits(a).wrapping_add(bits(far)).wrapping_add(1).max(bits(e));
         let (excess, room) = (size.saturating_sub(56), 56_u32.saturating_sub(size));
-        let fit = |weight: i128| weight.wrapping_shr(excess).wrapping_shl(room);
+        let half = if excess > 0 { 1_i128.wrapping_shl(excess.wrapping_sub(1)) } else { 0 };
+        let fit = |weight: i128| weight.wrapping_add(half).wrapping_shr(excess).wrapping_shl(room);
         let (a, e) = (fit(a), fit(e));
         if a == 0 || e == 0 {
             return Err(ConicRefusal::TooSmall);
@@ -274,15 +359,23 @@ impl Parabola {
         let e = if parameter < 0 { e.wrapping_neg() } else { e };
         // seen from the side that it is open to, the way across is clockwise or not
         let falls = to_across < 0;
-        let (conic, counter) = match self.axis {
-            Axis::Z => ([a, 0, c, e], falls == (e > 0)),
-            Axis::X => ([0, a, e, c], falls != (e > 0)),
-        };
-        let sense = if counter { Sense::CounterClockwise } else { Sense::Clockwise };
         if self.is_off((x, z), start) || self.is_off((x, z), end) {
             return Err(ConicRefusal::OffCurve);
         }
-        Conic::new(Octants::through(conic, to, (sense, Reach::Short)))
+        // F is 0 at the vertex: f = a u^2 + e v
+        let (vertex_along, start_along) = match self.axis {
+            Axis::Z => (self.vertex.1, start.z),
+            Axis::X => (self.vertex.0, start.x),
+        };
+        let (off_along, unit_along) = pulses(pulse_along, vertex_along, start_along);
+        let along = e.times(scale(off_along, 1 << FINE, unit_along)) << (SQUARED - FINE);
+        let f = scale(raised(a, scale(off, 1 << FINE, unit)).wrapping_add(along), 1, 1 << SQUARED);
+        let (conic, counter) = match self.axis {
+            Axis::Z => ([a, 0, c, e, f], falls == (e > 0)),
+            Axis::X => ([0, a, e, c, f], falls != (e > 0)),
+        };
+        let sense = if counter { Sense::CounterClockwise } else { Sense::Clockwise };
+        Conic::new(Octants::beside(conic, to, (sense, Reach::Short)))
     }
 
     /// Whether a lattice point is more than two pulses off the parabola.

@@ -1,34 +1,20 @@
-//! A part of an ellipse or a parabola inside one octant, with a timeline of its own.
+//! A part of an ellipse or a parabola with a timeline.
 //!
-//! The part walks the very same conic as the whole, so the parts of a [`Conic`](super::conic::Conic) together make the
-//! steps that it makes. Along an ellipse the coordinate is no elementary function of the length, so the timeline is a
-//! cubic: place and slope of the major coordinate are exact at both ends (Hermite), and the part is so short that the
-//! cubic is within a 24th of a pulse between them.
+//! Along an ellipse the coordinate is no elementary function of the length, so the timeline is a cubic: place and slope of
+//! the major coordinate are exact at both ends (Hermite), and the part is so short that the cubic is within a 24th of a
+//! pulse between them.
 
-use super::arc::{Arc, MAX_PIECES, Timeline};
+use super::arc::Arc;
 use super::arc_walker::ArcWalker;
-use super::method::Method;
+use super::conic_part::ConicPart;
 use super::proportion::Proportion;
-use crate::units::{Axis, Sense};
+use crate::units::Axis;
 
-/// A part of a conic.
+/// A part of a conic that can be run.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct ConicPiece {
-    /// `F = a x^2 + b z^2 - c x - d z`, coordinates from the whole conic's start.
-    pub(crate) conic: [i64; 4],
-    /// Its centre, X and Z, pulses with 16 fraction bits.
-    pub(crate) centre: [i64; 2],
-    /// Where the part begins, pulses from the conic's start.
-    pub(crate) from: (i32, i32),
-    /// Where it ends, pulses from `from`.
-    pub(crate) end: (i32, i32),
-    /// Steps of the major axis behind the joint.
-    pub(crate) steps: u32,
-    /// The way from the octant before to the first point of this one.
-    pub(crate) joint: (i8, i8),
-    pub(crate) octant: u8,
-    pub(crate) sense: Sense,
-    /// The major coordinate in the direction of travel, from `from`, pulses with 16 fraction bits: coefficients of the
+    pub(crate) part: ConicPart,
+    /// The major coordinate in the direction of travel, from the part's start, pulses with 16 fraction bits: coefficients of the
     /// powers of the part of the length covered.
     pub(crate) cubic: [i64; 4],
     /// From a length to the part of the whole that it is, 30 fraction bits.
@@ -42,35 +28,22 @@ pub struct ConicPiece {
 impl ConicPiece {
     /// The end, X then Z, pulses from the part's start.
     pub const fn end(&self) -> (i32, i32) {
-        self.end
+        self.part.end
     }
 
     /// A walker at the part's start.
     pub fn walk(&self) -> ArcWalker {
-        self.arc().walk_from(self.from)
+        self.part.walk()
     }
 
     /// A walker at the part's end.
     pub fn walk_from_end(&self) -> ArcWalker {
-        self.arc().walk_back_to(self.from)
+        self.part.walk_from_end()
     }
 
-    fn arc(&self) -> Arc {
-        let [a, b, c, d] = self.conic;
-        let (mut steps, mut joints) = ([0; MAX_PIECES], [(0, 0); MAX_PIECES - 1]);
-        // a joint leads from an octant to the next, here from one without steps
-        let [first, second, ..] = &mut steps;
-        let (octant, pieces) = if self.joint == (0, 0) {
-            *first = self.steps;
-            (self.octant, 1)
-        } else {
-            let [joint, ..] = &mut joints;
-            (*second, *joint) = (self.steps, self.joint);
-            (Arc::octant_before(self.octant, self.sense), 2)
-        };
-        let timeline = Timeline { centre: self.centre, ..Timeline::default() };
-        let (sense, method, end) = (self.sense, Method::MinimumDeviation, self.end);
-        Arc { a, b, c, d, steps, joints, octant, pieces, sense, method, timeline, end }
+    /// Steps of the major axis behind the joint.
+    pub(crate) const fn steps(&self) -> u32 {
+        self.part.steps
     }
 
     /// The major coordinate `length` along the part.
@@ -81,18 +54,18 @@ impl ConicPiece {
         first.wrapping_add(times(second.wrapping_add(times(third.wrapping_add(times(fourth))))))
     }
 
-    /// The coordinate of the first point behind the joint, from `from` in the direction of travel.
+    /// The coordinate of the first point behind the joint, from the part's start in the direction of travel.
     pub(crate) fn target(&self) -> i64 {
-        let (x, z) = Arc::signs(self.octant, self.sense);
-        let lines = match Arc::major(self.octant) {
-            Axis::X => i64::from(self.joint.0).wrapping_mul(i64::from(x)),
-            Axis::Z => i64::from(self.joint.1).wrapping_mul(i64::from(z)),
+        let (x, z) = Arc::signs(self.part.octant, self.part.sense);
+        let lines = match Arc::major(self.part.octant) {
+            Axis::X => i64::from(self.part.joint.0).wrapping_mul(i64::from(x)),
+            Axis::Z => i64::from(self.part.joint.1).wrapping_mul(i64::from(z)),
         };
         lines << 16
     }
 
     /// Steps of the joint.
     pub(crate) fn gap(&self) -> u32 {
-        u32::from(self.joint.0.unsigned_abs().max(self.joint.1.unsigned_abs()))
+        u32::from(self.part.joint.0.unsigned_abs().max(self.part.joint.1.unsigned_abs()))
     }
 }

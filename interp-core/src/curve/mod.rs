@@ -12,10 +12,12 @@ pub mod arc;
 pub mod arc_walker;
 mod around;
 pub mod conic;
+pub mod conic_part;
 #[cfg(feature = "methods")]
 pub mod conic_piece;
 pub mod dda;
 pub mod fraction;
+mod leads;
 pub mod line;
 pub mod method;
 pub(crate) mod octants;

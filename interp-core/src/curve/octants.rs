@@ -1,18 +1,23 @@
-//! Lays a conic through two lattice points out octant by octant: coefficients in, an [`Arc`] without a timeline's
+//! Lays a conic between two lattice points out octant by octant: coefficients in, an [`Arc`] without a timeline's
 //! figures out.
 //!
-//! The conic is `F = a x^2 + b z^2 - c x - d z`, coordinates in pulses from the start: a circle or an axis-parallel
+//! The conic is `F = a x^2 + b z^2 - c x - d z + f`, coordinates in pulses from the start: a circle or an axis-parallel
 //! ellipse, and with `a` or `b` 0 a parabola, an ellipse whose centre is infinitely far away. It knows no millimetres: an
 //! ellipse is a circle on a lattice with other pulse sizes. Octants are numbered as in [`super::arc`].
+//!
+//! A circle goes through both points, so its f is 0. Another conic stays where it was programmed, and its rounded ends
+//! are up to a pulse off along the minor axis. There the walk is [led](Leads): it stays between what can be reached from
+//! the start, and what the end can be reached from, by minor steps in the direction of travel only.
 
 use super::arc::{Arc, MAX_PIECES, Timeline};
+use super::leads::Leads;
 use super::method::Method;
 use super::prepare_arc::Reach;
 use crate::math::{Wide, root_wide, scale, to_i32, to_i64};
 use crate::units::{Axis, Sense};
 
 /// Integers in the same ratio without a common divisor.
-fn lowest(values: [i64; 4]) -> [i64; 4] {
+pub(crate) fn lowest<const N: usize>(values: [i64; N]) -> [i64; N] {
     let mut common = 0_u64;
     for value in values {
         let mut rest = value.unsigned_abs();
@@ -32,41 +37,48 @@ pub(crate) struct Octants {
     pub(crate) b: i128,
     pub(crate) c: i128,
     pub(crate) d: i128,
+    pub(crate) f: i128,
+    pub(crate) leads: Leads,
+    /// It does not pass through the ends.
+    pub(super) loose: bool,
     /// Gradient of `F`, both components, at the tangent points.
     tangent: i128,
 }
 
 impl Octants {
-    /// The conic with these coefficients, its centre moved so that it passes through `end`. `None` for a point.
-    pub(crate) fn through([a, b, c, d]: [i128; 4], end: (i32, i32), (sense, reach): (Sense, Reach)) -> Option<Self> {
-        let (mut c, mut d) = (c, d);
-        // move the centre until F is zero at the end: along the chord; that of a parabola square to its axis
+    /// The circle with these coefficients, its centre moved so that it passes through `end`. `None` for a point.
+    pub(crate) fn through([a, b, c, d]: [i128; 4], end: (i32, i32), way: (Sense, Reach)) -> Option<Self> {
+        // move the centre along the chord until F is zero at the end
         let (dx, dz) = (i128::from(end.0), i128::from(end.1));
         let (reach_x, reach_z) = (a.times(dx), b.times(dz));
         let chord = reach_x.times(dx).wrapping_add(reach_z.times(dz));
         let miss = chord.wrapping_sub(c.times(dx)).wrapping_sub(d.times(dz));
-        if b == 0 {
-            c = c.wrapping_add(scale(miss, 1, dx.abs()).wrapping_mul(dx.signum()));
-        } else if a == 0 {
-            d = d.wrapping_add(scale(miss, 1, dz.abs()).wrapping_mul(dz.signum()));
-        }
-        let closed = a != 0 && b != 0;
         let bits = 128_u32.wrapping_sub(miss.unsigned_abs().leading_zeros());
         let shift = bits.saturating_sub(60);
-        if closed {
-            c = c.wrapping_add(scale(reach_x, miss.wrapping_shr(shift), chord.wrapping_shr(shift).max(1)));
-            d = d.wrapping_add(scale(reach_z, miss.wrapping_shr(shift), chord.wrapping_shr(shift).max(1)));
-        }
-        // where |dF/dx| = |dF/dz| = g on the curve: g^2 = (b c^2 + a d^2) / (a + b)
+        let moved = |centre: i128, reach: i128| {
+            centre.wrapping_add(scale(reach, miss.wrapping_shr(shift), chord.wrapping_shr(shift).max(1)))
+        };
+        Self::new([a, b, moved(c, reach_x), moved(d, reach_z), 0], end, way)
+    }
+
+    /// The conic with these coefficients, as it is. `None` for a point.
+    pub(crate) fn beside(conic: [i128; 5], end: (i32, i32), way: (Sense, Reach)) -> Option<Self> {
+        Some(Self { loose: true, ..Self::new(conic, end, way)? })
+    }
+
+    fn new([a, b, c, d, f]: [i128; 5], end: (i32, i32), (sense, reach): (Sense, Reach)) -> Option<Self> {
+        // where |dF/dx| = |dF/dz| = g on the curve: g^2 = (b c^2 + a d^2 - 4 a b f) / (a + b)
         let longest = c.unsigned_abs().max(d.unsigned_abs());
         let weight = 128_u32.wrapping_sub(a.max(b).leading_zeros());
         let kept = 40_u32.min(126_u32.wrapping_sub(weight) >> 1);
         let spare = 128_u32.wrapping_sub(longest.leading_zeros()).saturating_sub(kept);
         let (cs, ds) = (c.wrapping_shr(spare), d.wrapping_shr(spare));
         let sum = b.saturating_mul(cs.times(cs)).saturating_add(a.saturating_mul(ds.times(ds)));
-        let square = sum.checked_div(a.wrapping_add(b))?;
+        let lowered = scale(a, b, a.wrapping_add(b)).times(f).wrapping_mul(4).wrapping_shr(spare.wrapping_mul(2));
+        let square = sum.checked_div(a.wrapping_add(b))?.wrapping_sub(lowered).max(0);
         let tangent = i128::from(root_wide(square.unsigned_abs())).wrapping_shl(spare);
-        (tangent > 0).then_some(Self { sense, reach, end, a, b, c, d, tangent })
+        let whole = Self { sense, reach, end, a, b, c, d, f, leads: Leads::default(), loose: false, tangent };
+        (tangent > 0).then_some(whole)
     }
 
     /// The first octant.
@@ -116,22 +128,22 @@ impl Octants {
             return (centre.wrapping_add(off), weight.wrapping_mul(2));
         }
         // a parabola along this axis, whose tangent points are where the other coordinate's gradient is +-d: there
-        // a x^2 - c x = d z gives z = (d^2 - c^2) / 4 a d
+        // a x^2 - c x + f = d z gives z = (d^2 - c^2 + 4 a f) / 4 a d
         let (c, d, a) = match axis {
             Axis::X => (self.d, self.c, self.b),
             Axis::Z => (self.c, self.d, self.a),
         };
-        let num = d.times(d).wrapping_sub(c.times(c));
+        let num = d.times(d).wrapping_sub(c.times(c)).wrapping_add(a.times(self.f).wrapping_mul(4));
         let den = a.times(d).wrapping_mul(4);
         if den < 0 { (num.wrapping_neg(), den.wrapping_neg()) } else { (num, den) }
     }
 
-    fn minor_at(&self, octant: u8, major: i32) -> i32 {
-        minor_at([self.a, self.b, self.c, self.d], octant, major)
+    pub(super) fn minor_at(&self, octant: u8, major: i32) -> i32 {
+        minor_at([self.a, self.b, self.c, self.d, self.f], octant, major)
     }
 
     /// The octants laid out; `None` where they do not lead to the end.
-    pub(crate) fn arc(&self, timeline: Timeline) -> Option<Arc> {
+    pub(crate) fn arc(&mut self, timeline: Timeline) -> Option<Arc> {
         let first = self.first();
         // the end belongs to the octant that it leaves: the one that the opposite sense would enter
         let last = Self::octant(self.gradient(self.end.0, self.end.1), self.sense.mirrored());
@@ -168,7 +180,7 @@ impl Octants {
     }
 
     /// Counts the lattice points of every octant visited. False where they do not lead to the end.
-    fn enumerate(&self, arc: &mut Arc) -> bool {
+    fn enumerate(&mut self, arc: &mut Arc) -> bool {
         let mut at = (0_i32, 0_i32);
         let mut octant = arc.octant;
         for piece in 0..arc.pieces {
@@ -200,11 +212,23 @@ impl Octants {
             };
             let steps = last.wrapping_sub(from).wrapping_mul(i32::from(sign));
             if steps >= 0 || (final_piece && enters) {
+                let lines = steps.max(0).unsigned_abs();
+                if self.loose && piece == 0 {
+                    self.leads.start = self.lead(octant, (from, last), at, true);
+                }
+                if self.loose && final_piece {
+                    self.leads.end = self.lead(octant, (last, from), self.end, false);
+                    if piece == 0 && !self.share(octant, lines) {
+                        return false;
+                    }
+                }
                 if enters {
-                    let to = match (steps >= 0, axis) {
-                        (false, _) => self.end,
-                        (true, Axis::X) => (from, self.minor_at(octant, from)),
-                        (true, Axis::Z) => (self.minor_at(octant, from), from),
+                    let to = if steps < 0 {
+                        self.end
+                    } else if final_piece {
+                        self.led(octant, (from, lines), self.leads.end, self.end, false)
+                    } else {
+                        Self::point(axis, from, self.minor_at(octant, from))
                     };
                     let joint = (i8::try_from(to.0.wrapping_sub(at.0)), i8::try_from(to.1.wrapping_sub(at.1)));
                     let (Ok(x), Ok(z)) = joint else { return false };
@@ -214,11 +238,13 @@ impl Octants {
                     at = to;
                 }
                 if let (Some(slot), true) = (arc.steps.get_mut(usize::from(piece)), steps > 0) {
-                    *slot = steps.unsigned_abs();
-                    let minor = self.minor_at(octant, last);
-                    at = match axis {
-                        Axis::X => (last, minor),
-                        Axis::Z => (minor, last),
+                    *slot = lines;
+                    at = if self.loose && final_piece {
+                        self.end
+                    } else if piece == 0 {
+                        self.led(octant, (last, lines), self.leads.start, at, true)
+                    } else {
+                        Self::point(axis, last, self.minor_at(octant, last))
                     };
                 }
             } else if final_piece {
@@ -227,6 +253,13 @@ impl Octants {
             octant = Arc::octant_after(octant, self.sense);
         }
         at == self.end
+    }
+
+    pub(super) const fn point(axis: Axis, major: i32, minor: i32) -> (i32, i32) {
+        match axis {
+            Axis::X => (major, minor),
+            Axis::Z => (minor, major),
+        }
     }
 
     /// The last lattice line before `num / den` when travelling with `sign`, or on it.
@@ -238,16 +271,16 @@ impl Octants {
 }
 
 /// The lattice line of the minor axis nearest to a conic at `major`, half toward plus infinity.
-pub(crate) fn minor_at([a, b, c, d]: [i128; 4], octant: u8, major: i32) -> i32 {
+pub(crate) fn minor_at([a, b, c, d, f]: [i128; 5], octant: u8, major: i32) -> i32 {
     let m = i128::from(major);
     let (am, cm, an, cn, above) = match Arc::major(octant) {
         Axis::X => (a, c, b, d, octant.wrapping_add(2) & 7 < 4),
         Axis::Z => (b, d, a, c, octant < 4),
     };
-    // an n^2 - cn n + (am m^2 - cm m) = 0, so 2 an n - cn = +- root(cn^2 - 4 an (am m^2 - cm m))
-    let rest = am.times(m).wrapping_sub(cm).times(m);
+    // an n^2 - cn n + (am m^2 - cm m + f) = 0, so 2 an n - cn = +- root(cn^2 - 4 an (am m^2 - cm m + f))
+    let rest = am.times(m).wrapping_sub(cm).times(m).wrapping_add(f);
     if an == 0 {
-        // cn n = am m^2 - cm m, floor(n + 1/2)
+        // cn n = am m^2 - cm m + f, floor(n + 1/2)
         let (top, bottom) = if cn < 0 { (rest.wrapping_neg(), cn.wrapping_neg()) } else { (rest, cn) };
         let doubled = top.wrapping_mul(2).wrapping_add(bottom);
         return to_i32(to_i64(doubled.quotient(bottom.wrapping_mul(2)).unwrap_or(0)));

@@ -156,7 +156,7 @@ impl Metric {
         if matches!(reach, Reach::Short) && near && radius > Self::place(coarser, 3) {
             return Prepared::Chord;
         }
-        match Preparation::new(self, start, delta, centre, radius, (sense, reach)).and_then(|p| p.arc()) {
+        match Preparation::new(self, start, delta, centre, radius, (sense, reach)).and_then(Preparation::arc) {
             Some((arc, turn)) => Prepared::Arc(arc, turn),
             None => Prepared::Chord,
         }
@@ -190,7 +190,7 @@ impl<'m> Preparation<'m> {
         Some(Self { metric, octants: Octants::through([a, b, c, d], end, (sense, reach))? })
     }
 
-    fn arc(&self) -> Option<(Arc, Turn)> {
+    fn arc(mut self) -> Option<(Arc, Turn)> {
         let (timeline, turn) = self.timeline(self.octants.first())?;
         Some((self.octants.arc(timeline)?, turn))
     }
