@@ -119,8 +119,7 @@ impl Kind {
                 knots.extend([end; 4]);
                 Self::Nurbs { points, knots }
             });
-        // rounded ends move a flat ellipse by more than a pulse: up to four to one here
-        let axis_ellipse = (size(), 0.25_f64..4.0, angle(), prop_oneof![sweep(), Just(TAU), Just(-TAU)]).prop_map(
+        let axis_ellipse = (size(), 0.1_f64..10.0, angle(), prop_oneof![sweep(), Just(TAU), Just(-TAU)]).prop_map(
             |(x, ratio, from, sweep)| Self::AxisEllipse {
                 half: (x, ((f64::from(x) * ratio) as i32).max(250)),
                 from,
@@ -185,6 +184,27 @@ fn basis(knots: &[u32], i: usize, degree: usize, u: f64) -> f64 {
         + part(knot(i + degree + 1) - u, knot(i + degree + 1) - knot(i + 1)) * basis(knots, i + 1, degree - 1, u)
 }
 
+/// Many points of a curve, none further than `step` nm from the next, nor the curve half way from the middle between two
+/// than a 20th of that: the tip of a hairpin is not left out.
+fn dense(curve: &dyn Fn(f64) -> (f64, f64), step: f64) -> Vec<(f64, f64)> {
+    fn between(curve: &dyn Fn(f64) -> (f64, f64), (from, to): (f64, f64), step: f64, points: &mut Vec<(f64, f64)>) {
+        let (end, last, half) = (curve(to), points[points.len() - 1], f64::midpoint(from, to));
+        let middle = curve(half);
+        let bow = (f64::midpoint(last.0, end.0) - middle.0).hypot(f64::midpoint(last.1, end.1) - middle.1);
+        if (end.0 - last.0).hypot(end.1 - last.1) > step || bow > step / 20.0 {
+            between(curve, (from, half), step, points);
+            between(curve, (half, to), step, points);
+        } else {
+            points.push(end);
+        }
+    }
+    let mut points = vec![curve(0.0)];
+    for k in 0..500 {
+        between(curve, (f64::from(k) / 500.0, f64::from(k + 1) / 500.0), step, &mut points);
+    }
+    points
+}
+
 impl Sample {
     pub(crate) fn new(kind: Kind, origin: (i32, i32)) -> Self {
         let mut sample = Self { kind, start: Point::default(), origin };
@@ -247,46 +267,24 @@ impl Sample {
         }
     }
 
-    /// Many points of the curve, none further than 5 um from the next.
+    /// How far a step may be off the programmed curve, coarser pulses: by minimum deviation one at the ends, which are
+    /// rounded, and half a one between them, and what a polyline leaves out; 1.5 along chords.
+    pub(crate) fn bounds(&self) -> (f64, f64) {
+        if self.is_conic() { (1.0, 0.51) } else { (1.5, 1.5) }
+    }
+
+    const fn is_conic(&self) -> bool {
+        matches!(self.kind, Kind::AxisEllipse { .. } | Kind::AxisParabola { .. })
+    }
+
+    /// Many points of the curve.
     pub(crate) fn dense(&self) -> Vec<(f64, f64)> {
-        let mut points = vec![self.exact(0.0)];
-        for k in 0..500 {
-            self.between(f64::from(k) / 500.0, f64::from(k + 1) / 500.0, &mut points);
-        }
-        points
-    }
-
-    fn between(&self, from: f64, to: f64, points: &mut Vec<(f64, f64)>) {
-        let (end, last) = (self.exact(to), points[points.len() - 1]);
-        if (end.0 - last.0).hypot(end.1 - last.1) > 5_000.0 {
-            self.between(from, f64::midpoint(from, to), points);
-            self.between(f64::midpoint(from, to), to, points);
-        } else {
-            points.push(end);
-        }
-    }
-
-    /// How far a step may be off, coarser pulses.
-    pub(crate) fn bound(&self) -> f64 {
-        match &self.kind {
-            Kind::AxisEllipse { half, .. } => {
-                let (x, z) = (f64::from(half.0), f64::from(half.1));
-                1.2 + 0.75 * x.max(z) / x.min(z)
-            }
-            Kind::AxisParabola { .. } => 3.0,
-            _ => 1.5,
-        }
-    }
-
-    /// Pulses of second difference that rounding to the lattice fakes: 4 for an axis that steps only along with the other,
-    /// and 2 more where an axis turns round in a corner, which splines may have.
-    pub(crate) fn faked(&self) -> f64 {
-        if matches!(self.kind, Kind::Spline { .. } | Kind::Nurbs { .. }) { 6.0 } else { 4.0 }
+        dense(&|t| self.exact(t), if self.is_conic() { 1_000.0 } else { 5_000.0 })
     }
 
     /// Nowhere so tightly bent that the quick machine would have to slow down.
     pub(crate) fn is_wide(&self) -> bool {
-        let curve = self.dense();
+        let curve = dense(&|t| self.exact(t), 5_000.0);
         // 900 mm/min, 0.8 of 50 m/s2: v^2 / a is 6 um; corners of splines may be sharper
         !matches!(self.kind, Kind::Spline { .. } | Kind::Nurbs { .. })
             || curve.windows(3).all(|p| {

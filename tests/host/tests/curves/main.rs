@@ -15,13 +15,13 @@
 mod kinds;
 mod played;
 
+use host_tests::programs::cases;
 use interp_core::block::{Builder, Pace};
 use interp_core::config::{AxisConfig, Config, Machine};
 use interp_core::units::{Feedrate, PulseSize};
 use kinds::{Kind, Sample};
 use played::Played;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 fn feed(mm_per_min: u32) -> Feedrate {
     Feedrate::from_nm_per_min(u64::from(mm_per_min) * 1_000_000).unwrap()
@@ -72,18 +72,8 @@ fn pulses() -> impl Strategy<Value = ((u32, u32), (u32, u32))> {
     (one.clone(), one)
 }
 
-/// The same cases in every run, unless a long run asks for more: of some thousand random ones a few still fail, as
-/// `docs/src/curves.md` tells.
-fn config() -> ProptestConfig {
-    let bounded = ProptestConfig { max_shrink_iters: 60, failure_persistence: None, ..ProptestConfig::default() };
-    match std::env::var("HANDCNC_CASES").ok().and_then(|text| text.parse().ok()) {
-        Some(cases) => ProptestConfig { cases, ..bounded },
-        None => ProptestConfig { cases: 100, rng_seed: RngSeed::Fixed(5), ..bounded },
-    }
-}
-
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(ProptestConfig { cases: cases(100), max_shrink_iters: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// At any feed, on a slow machine: the steps are near the curve and the axes keep their limits.
     #[test]
@@ -92,9 +82,11 @@ proptest! {
     ) {
         let machine = machine(x, z, accel);
         let played = run(&sample, &machine, Pace::Feed(feed(mm_per_min)));
-        let off = played.farthest(&machine, &sample);
-        prop_assert!(off <= sample.bound(), "{sample:?}: {off} pulses off");
-        if let Some(fault) = played.limits(&machine, sample.faked()) {
+        let (bound, inner) = sample.bounds();
+        let (off, between) = played.farthest(&machine, &sample, inner);
+        prop_assert!(off <= bound, "{sample:?}: {off} pulses off");
+        prop_assert!(between <= inner, "{sample:?}: {between} pulses off between the ends");
+        if let Some(fault) = played.limits(&machine) {
             prop_assert!(false, "{sample:?}: {fault}");
         }
     }
@@ -110,8 +102,8 @@ proptest! {
         // in a hairpin a step does not tell how far along it is, and the speed has to drop
         if sample.is_wide() {
             let (behind, ahead) = played.feed_error(&machine, &sample, feed);
-            // a step is so far from its place at both ends of a window; a walked ellipse may be a little larger, too
-            let most = 4.0 + 2.0 * (sample.bound() - 1.5);
+            // a step is so far from its place at both ends of a window
+            let most = 4.0;
             prop_assert!(behind >= -most && ahead <= most, "{sample:?}: {behind} to {ahead} pulses off in a window");
         }
     }

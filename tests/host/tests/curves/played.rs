@@ -61,14 +61,21 @@ impl Played {
         Lattice { x, z }
     }
 
-    /// Largest distance of a step from the curve, coarser pulses.
-    pub(crate) fn farthest(&self, machine: &Machine, sample: &Sample) -> f64 {
+    /// Largest distances of a step from the curve, coarser pulses: of all, and of those between the first and the last one
+    /// that are no further off than `inner`.
+    pub(crate) fn farthest(&self, machine: &Machine, sample: &Sample, inner: f64) -> (f64, f64) {
         let coarser = nm(machine.x.pulse).max(nm(machine.z.pulse));
-        let places = self.along(machine, sample);
-        places.iter().fold(0.0_f64, |worst, (_, off)| worst.max(off / coarser))
+        let offs: Vec<_> = self.along(machine, sample).iter().map(|(_, off)| off / coarser).collect();
+        let most = |offs: &[f64]| offs.iter().copied().fold(0.0, f64::max);
+        let near = |off: &f64| *off <= inner;
+        let first = offs.iter().position(near).unwrap_or(0);
+        let last = offs.iter().rposition(near).unwrap_or(0);
+        (most(&offs), offs.get(first..=last).map_or(0.0, most))
     }
 
-    /// For each step: the length of the curve up to the nearest point, and the distance from it, nm.
+    /// For each step: the length of the curve up to the nearest point, and the distance from it, nm. Where the curve
+    /// comes near again, as beyond the tip of a hairpin, the later of all near places counts: who followed the nearest
+    /// one might go back on the branch that leads there.
     fn along(&self, machine: &Machine, sample: &Sample) -> Vec<(f64, f64)> {
         let curve = sample.dense();
         let mut lengths = vec![0.0];
@@ -77,14 +84,13 @@ impl Played {
             lengths.push(lengths[lengths.len() - 1] + side);
         }
         let (px, pz) = (nm(machine.x.pulse), nm(machine.z.pulse));
-        let reach = 30.0 * px.max(pz);
+        let (reach, bound) = (30.0 * px.max(pz), sample.bounds().0 * px.max(pz));
         let mut begin = 0;
         let nearest = |(_, x, z): &(u64, i32, i32)| {
             let (x, z) = (f64::from(*x) * px, f64::from(*z) * pz);
-            let mut best = (0.0, f64::MAX);
-            let from = begin;
-            for (k, pair) in curve.windows(2).enumerate().skip(from) {
-                if best.1 < reach && lengths[k] > best.0 + reach {
+            let (mut best, mut was_near, mut window) = ((0.0, f64::MAX), false, f64::MAX);
+            for (k, pair) in curve.windows(2).enumerate().skip(begin) {
+                if lengths[k] > window {
                     break;
                 }
                 let (dx, dz) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
@@ -95,9 +101,14 @@ impl Played {
                     0.0
                 };
                 let off = (x - pair[0].0 - t * dx).hypot(z - pair[0].1 - t * dz);
-                if off < best.1 {
+                let (is_near, comes_again) = (off <= bound, off <= bound && !was_near);
+                if off < best.1 || comes_again {
                     best = (lengths[k] + t * square.sqrt(), off);
+                    if off < reach && (comes_again || off > bound) {
+                        window = best.0 + reach;
+                    }
                 }
+                was_near = is_near;
             }
             begin = lengths.partition_point(|length| *length < best.0 - reach).min(curve.len() - 2);
             best
@@ -106,8 +117,9 @@ impl Played {
     }
 
     /// The first limit that is broken: over h ticks an axis moves at most v h + 2 pulses, and its second difference is at
-    /// most a h^2 + `faked` pulses and what starting and stopping jump.
-    pub(crate) fn limits(&self, machine: &Machine, faked: f64) -> Option<String> {
+    /// most a h^2 + 4 pulses, and what starting and stopping jump. The 4 are what rounding to the lattice fakes for an axis
+    /// that steps only along with the other; where it turns round its lag changes sides, which fakes 2 more.
+    pub(crate) fn limits(&self, machine: &Machine) -> Option<String> {
         for (axis, limits) in [(0, machine.x), (1, machine.z)] {
             let place = |k: usize| {
                 let at = self.ticks[k.min(self.ticks.len() - 1)];
@@ -125,6 +137,8 @@ impl Played {
                         return Some(format!("axis {axis} moves {travel} pulses in {h} ticks at {k}"));
                     }
                     let bend = (a - 2.0 * b + c).abs();
+                    let turns = (b - a) * (c - b) < 0.0;
+                    let faked = if turns { 6.0 } else { 4.0 };
                     let bound = accel * ticks * ticks + faked + 2.0 * jump * ticks;
                     if bend > bound + 1e-6 {
                         return Some(format!(
