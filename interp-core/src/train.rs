@@ -33,12 +33,6 @@ impl Levels {
         }
     }
 
-    /// With both step pins low.
-    #[must_use]
-    pub const fn without_steps(self) -> Self {
-        self.with_step(Axis::X, false).with_step(Axis::Z, false)
-    }
-
     /// Whether the step pin is high.
     pub const fn step(self, axis: Axis) -> bool {
         self.0 & Self::step_mask(axis) != 0

@@ -29,7 +29,7 @@ use interp_core::block::{Block, Feed, Output, Speed, Work};
 use interp_core::channel::{Channel, Report, State};
 use interp_core::compensation::pitch::PitchTable;
 use interp_core::config::Machine;
-use interp_core::train::{Event, Train};
+use interp_core::train::Train;
 use interp_core::units::{Axis, Lattice};
 
 use crate::queue::Consumer;
@@ -85,7 +85,7 @@ impl<'q> Foreground<'q> {
             self.forget();
         }
         self.operate();
-        let report = if self.desk.locked.is_some() { self.run(&mut Locked(out)) } else { self.run(out) };
+        let report = self.run(out);
         self.oversee(&report);
         self.outputs.follow(report.output, report.state, self.alarm, self.desk.motors);
         report
@@ -250,15 +250,6 @@ fn dried(block: Option<Block>, dry: Option<Speed>) -> Option<Block> {
         _ => {}
     }
     Some(block)
-}
-
-/// Machine lock: the train without its steps.
-struct Locked<'o, O>(&'o mut O);
-
-impl<O: Train> Train for Locked<'_, O> {
-    fn put(&mut self, event: Event) {
-        self.0.put(Event::new(event.levels().without_steps(), event.interval()));
-    }
 }
 
 /// A state as a number, for a [snapshot](published::Published) and for logs.

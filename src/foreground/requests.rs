@@ -181,9 +181,10 @@ impl Foreground<'_> {
 
     /// Machine lock: while it is on only the display moves; then it goes back to where the axes are.
     fn lock(&mut self, on: bool) {
-        if on && self.desk.locked.is_none() {
+        if on && self.desk.locked.is_none() && self.channel.mute(true) {
             self.desk.locked = Some((self.channel.position(), self.channel.offset()));
         } else if let (false, Some((position, offset))) = (on, self.desk.locked.take()) {
+            self.channel.mute(false);
             self.channel.set_position(position);
             self.channel.set_offset(offset);
         }

@@ -280,6 +280,16 @@ impl<const N: usize> Channel<N> {
         self.overrides.feed
     }
 
+    /// Makes no pulses from now on, or makes them again: the position alone moves. False, and nothing changes, while anything
+    /// moves.
+    pub fn mute(&mut self, muted: bool) -> bool {
+        let rests = self.speed == 0 && self.hands.at_rest() && self.settled();
+        if rests {
+            self.superposed.mute(muted);
+        }
+        rests
+    }
+
     /// Says, right after [`start`](Self::start), that no more blocks come once the source has none: the path ends in the last
     /// one, and no end block has to follow.
     pub const fn close(&mut self) {
@@ -542,7 +552,7 @@ impl<const N: usize> Channel<N> {
 
     /// Whether all is made that has to be added to the program where it stands.
     fn settled(&self) -> bool {
-        !self.superposed.is_live() && (!self.compensation.is_on() || self.compensation.settled())
+        !self.superposed.owes() && (!self.compensation.is_on() || self.compensation.settled())
     }
 
     /// Begins what comes next.

@@ -93,12 +93,19 @@ pub struct Superposed {
     x: Added,
     z: Added,
     live: bool,
+    /// No pulse is made, the program's included.
+    muted: bool,
 }
 
 impl Superposed {
     /// Nothing.
     pub const fn new() -> Self {
-        Self { x: Added::NONE, z: Added::NONE, live: false }
+        Self { x: Added::NONE, z: Added::NONE, live: false, muted: false }
+    }
+
+    /// Makes no pulses from now on, or makes them again; nothing may be owed.
+    pub const fn mute(&mut self, muted: bool) {
+        self.muted = muted;
     }
 
     /// Adds these signed pulses of X and Z in the tick that begins.
@@ -116,6 +123,11 @@ impl Superposed {
     /// Whether steps have to be made by [`step`](Self::step) and not past it.
     #[inline]
     pub const fn is_live(&self) -> bool {
+        self.live | self.muted
+    }
+
+    /// Whether something is still to be made.
+    pub const fn owes(&self) -> bool {
         self.live
     }
 
@@ -130,6 +142,9 @@ impl Superposed {
         shaper: &mut Shaper,
         out: &mut impl Train,
     ) -> u32 {
+        if self.muted {
+            return 0;
+        }
         let first = times.time >> FRACTION;
         if self.next().is_some_and(|next| next >> FRACTION <= first) {
             self.until(first, shaper, out);
@@ -195,14 +210,15 @@ impl Superposed {
     fn make(&self, clock: u32, pulses: [i8; 2], program: Step, shaper: &mut Shaper, out: &mut impl Train) {
         let ([mut x, mut z], mut program) = (pulses, program);
         loop {
-            let made = Step { x: x.signum(), z: z.signum() };
+            let due = Step { x: x.signum(), z: z.signum() };
+            let made = if self.muted { Step { x: 0, z: 0 } } else { due };
             if made.x != 0 || made.z != 0 {
                 shaper.step(clock, made.x, made.z, out);
             }
             if made != program {
                 out.superposed(shaper.began().max(clock.cast_signed()), program, made);
             }
-            (x, z, program) = (x.wrapping_sub(made.x), z.wrapping_sub(made.z), Step { x: 0, z: 0 });
+            (x, z, program) = (x.wrapping_sub(due.x), z.wrapping_sub(due.z), Step { x: 0, z: 0 });
             if x == 0 && z == 0 {
                 return;
             }

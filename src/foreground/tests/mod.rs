@@ -22,6 +22,7 @@ use crate::background::compile::Compiler;
 use crate::background::parameters::Parameters;
 use crate::queue::{Producer, Queue};
 use feature_editor::codes::Format;
+use interp_core::train::Event;
 use interp_core::units::Point;
 
 /// A lathe whose pulses are counted.
