@@ -8,7 +8,8 @@
 //!
 //! **Opposite pulses cancel first.** A pulse that would turn its axis round is not made at once: it is owed. A pulse
 //! the other way, the program's or an added one, then cancels it, and neither is made. A second one the same way shows
-//! that the axis does turn, and both are made; so does the time, after [`PATIENCE`] ticks. So a motor is at most one
+//! that the axis does turn: it is made, and the one still owed with the tick's end, so that a motor that has stood is not
+//! asked for two pulses at once. So does the time, after [`PATIENCE`] ticks. So a motor is at most one
 //! pulse behind, and an axis that moves on under a compensation against its motion never turns round.
 //!
 //! A tick without such pulses knows nothing of all this.
@@ -61,22 +62,23 @@ impl Added {
         self.sign
     }
 
-    /// A pulse that is due (or none): what is to be made now of an axis that faces plus or not, at most two pulses.
+    /// A pulse that is due (or none): what is to be made now of an axis that faces plus or not, at most one pulse.
     fn offer(&mut self, pulse: i8, faces_plus: bool) -> i8 {
         let owed = self.owed.wrapping_add(pulse);
-        if owed == 0 || (owed > 0) == faces_plus || owed.unsigned_abs() > 1 {
-            (self.owed, self.waited) = (0, 0);
-            owed
-        } else {
-            self.owed = owed;
-            0
-        }
+        let turns = (owed > 0) != faces_plus;
+        let made = if owed == 0 || turns && owed.unsigned_abs() == 1 { 0 } else { owed.signum() };
+        (self.owed, self.waited) = (owed.wrapping_sub(made), if made == 0 && owed != 0 { self.waited } else { 0 });
+        made
     }
 
-    /// A tick is over: what must not wait longer.
-    fn patience(&mut self, patience: u8) -> i8 {
+    /// A tick is over: what must not wait longer. What the axis need not turn round for does not wait.
+    fn patience(&mut self, patience: u8, faces_plus: bool) -> i8 {
         if self.owed == 0 {
             return 0;
+        }
+        if (self.owed > 0) == faces_plus {
+            self.waited = 0;
+            return core::mem::take(&mut self.owed);
         }
         self.waited = self.waited.saturating_add(1);
         if self.waited < patience {
@@ -181,7 +183,8 @@ impl Superposed {
     pub fn end(&mut self, moves: bool, shaper: &mut Shaper, out: &mut impl Train) {
         self.until(TICK_CLOCKS, shaper, out);
         let patience = if moves { PATIENCE } else { 0 };
-        let (x, z) = (self.x.patience(patience), self.z.patience(patience));
+        let x = self.x.patience(patience, shaper.faces_plus(Axis::X));
+        let z = self.z.patience(patience, shaper.faces_plus(Axis::Z));
         self.make(LATE, [x, z], Step { x: 0, z: 0 }, shaper, out);
         self.live = self.x.owed != 0 || self.z.owed != 0;
     }
