@@ -174,3 +174,74 @@ fn rapids_are_overridden_and_a_dry_run_has_its_own_feed() {
     // 1000 mm/min
     assert!((at - bench.at.x - 1333).abs() <= 3, "{}", at - bench.at.x);
 }
+
+/// The book's table of modes is what the machine does: a row a request, a column a mode, and what is said where it is refused.
+#[test]
+fn the_book_has_the_table() {
+    use std::fmt::Write;
+    use std::string::String;
+    let rest = Situation {
+        mode: Mode::Automatic,
+        state: State::Idle,
+        moves: false,
+        hands: false,
+        own_path: false,
+        alarm: None,
+        open: false,
+        guard: false,
+        motors: true,
+        verified: true,
+        contour: true,
+        cut: true,
+        kept: true,
+        thread: false,
+    };
+    let zero = Length::ZERO;
+    let rows = [
+        ("cycle start", Command::Start),
+        ("feed hold", Command::Hold),
+        ("reset", Command::Reset),
+        ("another mode", Command::Mode(Mode::Handwheel)),
+        ("retrace", Command::Mode(Mode::Retrace)),
+        ("automatic", Command::Mode(Mode::Automatic)),
+        ("overrides, single block, optional stop", Command::FeedOverride(100)),
+        ("dry run, machine lock, parameters", Command::DryRun(true)),
+        ("taper, arc", Command::Contour(super::contour::Contour::Taper(interp_core::units::Point::default()))),
+        ("return", Command::Return),
+        ("home", Command::Home(Axis::X)),
+        ("zero, touch off", Command::Zero(Axis::X, zero)),
+        ("confirm position", Command::ConfirmPosition),
+        ("motors", Command::Motors(false)),
+        ("keep offset, book wear", Command::KeepOffset),
+        ("null offset", Command::NullOffset),
+        ("spindle on", Command::Spindle(1)),
+        ("resume", Command::Resume),
+    ];
+    let table = |head: &str, columns: &[(&str, Situation)]| {
+        let mut table = String::new();
+        let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+        writeln!(table, "| {head} | {} |\n|---|{}", names.join(" | "), "---|".repeat(names.len())).unwrap();
+        for (name, command) in &rows {
+            let cells: Vec<&str> = columns
+                .iter()
+                .map(|(_, now)| mode::refusal(command, now).map_or("yes", Refusal::name))
+                .collect();
+            writeln!(table, "| {name} | {} |", cells.join(" | ")).unwrap();
+        }
+        table
+    };
+    let at_rest: Vec<(&str, Situation)> =
+        Mode::ALL.into_iter().map(|mode| (mode.name(), Situation { mode, ..rest })).collect();
+    let in_auto = [
+        ("running", Situation { state: State::Running, moves: true, ..rest }),
+        ("held, standing", Situation { state: State::Holding, ..rest }),
+        ("alarm", Situation { alarm: Some(Alarm::Emergency), ..rest }),
+        ("guard open", Situation { guard: true, ..rest }),
+        ("motors off", Situation { motors: false, verified: false, ..rest }),
+        ("unverified", Situation { verified: false, ..rest }),
+    ];
+    let book = include_str!("../../../docs/src/modes.md");
+    for wanted in [table("at rest, in mode", &at_rest), table("in automatic", &in_auto)] {
+        assert!(book.contains(&wanted), "the book lacks this table:\n{wanted}");
+    }
+}
