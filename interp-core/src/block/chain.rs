@@ -293,6 +293,16 @@ impl Stretch {
                 let (a, b) = (extent(entry, chord), extent(chord, exit));
                 most = (a.0.max(b.0), a.1.max(b.1));
             }
+            // and one may bend more sharply somewhere inside: by so much all of it would, as between two quarters
+            let side =
+                |a: Place, b: Place| unit((i128::from(b.0.wrapping_sub(a.0)), i128::from(b.1.wrapping_sub(a.1))));
+            for bend in p.windows(3) {
+                let [a, b, c] = bend else { continue };
+                let (Some(before), Some(after)) = (side(*a, *b), side(*b, *c)) else { continue };
+                let half = reach(*a, *b).wrapping_add(reach(*b, *c)) >> 1;
+                let all = scale(i128::from(angle_between(before, after)), i128::from(length), i128::from(half));
+                turn = turn.max(to_u64(all));
+            }
             if turn > HALF_TURN_Q60.unsigned_abs() >> 1 {
                 most = (RADIAN_Q30, RADIAN_Q30);
             }

@@ -195,7 +195,10 @@ impl Octants {
                 end
             } else {
                 let (num, den) = self.border(octant, axis, Arc::ends_at_tangent(octant, self.sense));
-                Self::before(num, den, sign)
+                let last = Self::before(num, den, sign);
+                // the end, off the curve, may lie before the border of its own octant: not past it and back
+                let beyond = last.wrapping_sub(end).wrapping_mul(i32::from(sign)) > 0;
+                if self.loose && beyond && piece.wrapping_add(2) == arc.pieces { end } else { last }
             };
             // the first lattice line of this octant
             let (from, enters) = if piece == 0 {
@@ -216,7 +219,7 @@ impl Octants {
                 if self.loose && piece == 0 {
                     self.leads.start = self.lead(octant, (from, last), at, true);
                 }
-                if self.loose && final_piece {
+                if self.loose && final_piece && steps >= 0 {
                     self.leads.end = self.lead(octant, (last, from), self.end, false);
                     if piece == 0 && !self.share(octant, lines) {
                         return false;
