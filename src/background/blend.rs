@@ -6,7 +6,8 @@
 //! The arc bears the line of the feed that it leads into, and the smaller feed of both. Without G64 every action
 //! passes at once.
 //!
-//! Under G61.1 a motion is followed by a dwell of a tick, so that it ends in standstill.
+//! Under G61.1 a motion is followed by a dwell of a tick, so that it ends in standstill. Feeds a turn and threads pass as
+//! they are: what follows the spindle has no feed that an arc could be found for.
 
 use feature_editor::codes::{Action, Centre, Distance, Feed, Item, PathControl};
 use interp_core::blend::{Allowance, Blend, Corners, Segment};
@@ -147,7 +148,9 @@ const fn is_arc(held: &Held) -> bool {
 
 /// Compiles an action that nothing blends.
 fn pass(builder: &mut Builder, item: &Item, emit: &mut impl FnMut(&Item, &[Block])) -> Option<Finding> {
-    if item.control != PathControl::Stop || motion_of(&item.action).is_none() {
+    // threads that follow one another are one cut
+    let stops = motion_of(&item.action).is_some_and(|(_, _, feed)| !matches!(feed, Feed::Thread { .. }));
+    if item.control != PathControl::Stop || !stops {
         return compile(builder, item, emit);
     }
     let mut moves = false;

@@ -271,6 +271,8 @@ pub(super) fn compile(builder: &mut Builder, item: &Item, emit: &mut impl FnMut(
     let pace = match feed {
         Feed::Rapid => Pace::Rapid,
         Feed::PerMinute(feed) => Pace::Feed(feed),
+        Feed::PerTurn(lead) => Pace::PerTurn(lead),
+        Feed::Thread { lead, start } => Pace::Thread { lead, start },
     };
     let built = builder.motion(path, end, pace);
     if let Some(why) = built.refused {

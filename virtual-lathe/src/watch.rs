@@ -165,14 +165,16 @@ impl Observer for Watch {
         };
         #[expect(clippy::cast_precision_loss, reason = "feeds of at most eleven digits")]
         let feed_mm_min = match feed {
-            Feed::Rapid => None,
+            // what follows the spindle has no feed of its own
+            Feed::Rapid | Feed::PerTurn(_) | Feed::Thread { .. } => None,
             Feed::PerMinute(feed) => Some(feed.nm_per_min() as f64 / 1e6),
         };
         self.checker.motion(Motion { line: item.line, shape, end_nm: nm(end), feed_mm_min });
         let kind = match (shape, feed) {
             (_, Feed::Rapid) => Kind::Rapid,
-            (Shape::Line, Feed::PerMinute(_)) => Kind::Feed,
-            (Shape::Arc { .. }, Feed::PerMinute(_)) => Kind::Arc,
+            (_, Feed::Thread { .. }) => Kind::Thread,
+            (Shape::Line, Feed::PerMinute(_) | Feed::PerTurn(_)) => Kind::Feed,
+            (Shape::Arc { .. }, Feed::PerMinute(_) | Feed::PerTurn(_)) => Kind::Arc,
         };
         if blocks > 0 {
             self.blocks += 1;

@@ -92,6 +92,40 @@ pub enum DiagnosticKind {
     },
     /// Feed motion, and no F yet; the motion code, or the axis word.
     FeedMissing(Word),
+    /// Feed motion under G95, and no F yet; the motion code, or the axis word.
+    FeedPerTurnMissing(Word),
+    /// Thread without a lead; the motion code, or the axis word.
+    LeadMissing(Word),
+    /// Lead, or F under G95, that is zero, less, or rounds to zero.
+    LeadNotPositive(Word),
+    /// Lead, or F under G95, above 500 mm.
+    LeadTooLarge(Word),
+    /// G33 with I and K.
+    LeadTwice {
+        /// I.
+        x: Word,
+        /// K.
+        z: Word,
+    },
+    /// G33 with the lead of the axis that goes less far.
+    LeadOfOtherAxis {
+        /// I or K.
+        word: Word,
+        /// The axis that goes farther.
+        axis: Axis,
+    },
+    /// G32 with I or K.
+    LeadWithG32(Word),
+    /// G33 with F.
+    FeedWithThread(Word),
+    /// Thread whose end is its start.
+    ThreadEmpty(Word),
+    /// Q that is no whole number of 0.001 degrees of a turn.
+    ThreadStart(Word),
+    /// Warning: Q below a degree: perhaps degrees were meant.
+    ThreadStartSmall(Word),
+    /// Q in a line that is no thread.
+    ThreadStartUnused(Word),
     /// G4 without P.
     DwellMissing,
     /// P below zero.
@@ -192,7 +226,9 @@ impl DiagnosticKind {
     /// How bad it is.
     pub const fn severity(self) -> Severity {
         match self {
-            Self::DwellLong(_) | Self::ToleranceMissing(_) | Self::EndCodeMissing => Severity::Warning,
+            Self::DwellLong(_) | Self::ToleranceMissing(_) | Self::ThreadStartSmall(_) | Self::EndCodeMissing => {
+                Severity::Warning
+            }
             _ => Severity::Error,
         }
     }

@@ -10,8 +10,9 @@ use interp_core::units::{Feedrate, Length, Sense};
 use super::decimal::Number;
 use super::diagnostic::{Diagnostic, DiagnosticKind, Report};
 use super::item::{Action, Feed, PathControl, SpindleSpeed};
-use super::modal::{Motion, State};
+use super::modal::{Motion, State, ThreadCode};
 use super::settings::{Format, Settings};
+use super::thread;
 use super::word::{Lexer, Placed};
 use super::words::{Words, check_block_number, exclude};
 
@@ -27,7 +28,8 @@ enum Code {
     Inch(bool),
     /// True for G91.
     Incremental(bool),
-    FeedPerMinute,
+    /// True for G95.
+    PerTurn(bool),
     Path(PathCode),
 }
 
@@ -58,11 +60,14 @@ impl Code {
             18 => Self::Plane,
             20 => Self::Inch(true),
             21 => Self::Inch(false),
+            32 => Self::Motion(Motion::Thread(ThreadCode::ByFeed)),
+            33 => Self::Motion(Motion::Thread(ThreadCode::ByAxis)),
             61 => Self::Path(PathCode::Exact),
             64 => Self::Path(PathCode::Blend),
             90 => Self::Incremental(false),
             91 => Self::Incremental(true),
-            94 => Self::FeedPerMinute,
+            94 => Self::PerTurn(false),
+            95 => Self::PerTurn(true),
             _ => return None,
         })
     }
@@ -117,7 +122,9 @@ impl Block {
                 check_block_number(placed, report);
                 self.words.keep(placed, report);
             }
-            'F' | 'S' | 'T' | 'X' | 'Z' | 'U' | 'W' | 'I' | 'K' | 'R' | 'P' => self.words.keep(placed, report),
+            'F' | 'S' | 'T' | 'X' | 'Z' | 'U' | 'W' | 'I' | 'K' | 'R' | 'P' | 'Q' => {
+                self.words.keep(placed, report);
+            }
             _ => {
                 self.is_foreign = true;
                 report.tell(placed.span, DiagnosticKind::UnknownLetter { word, format: Format::Gcode });
@@ -166,7 +173,8 @@ impl Block {
                 Code::Diameter(diameter) => state.diameter = diameter,
                 Code::Inch(inch) => state.inch = inch,
                 Code::Incremental(incremental) => state.incremental = incremental,
-                Code::Dwell | Code::Plane | Code::FeedPerMinute | Code::Path(_) => {}
+                Code::PerTurn(per_turn) => state.set_per_turn(per_turn),
+                Code::Dwell | Code::Plane | Code::Path(_) => {}
             }
         }
     }
@@ -194,12 +202,27 @@ pub(crate) fn block(
     let dwell = dwell(&block, report);
     path(&block, state, report);
     let motion = super::motion::motion(&block, settings, state, report);
+    thread::unused_start(&block, state, report);
     let stop = block.words.stop.map(|(action, _)| action);
     ([speed, spindle, tool, dwell, motion, stop], block.words.ends())
 }
 
-/// F: millimetres (inches) a minute.
+/// F: millimetres (inches) a minute, under G95 or of a thread a turn.
 fn feed(placed: Placed, settings: &Settings, state: &mut State, report: &mut Report<'_, impl FnMut(Diagnostic)>) {
+    match state.motion {
+        Some(Motion::Thread(ThreadCode::ByFeed)) => {
+            state.lead = thread::lead(placed, state.unit_nm(), report).or(state.lead);
+            return;
+        }
+        Some(Motion::Thread(ThreadCode::ByAxis)) => {
+            return report.tell(placed.span, DiagnosticKind::FeedWithThread(placed.word));
+        }
+        _ if state.per_turn => {
+            state.feed = thread::lead(placed, state.unit_nm(), report).map(Feed::PerTurn).or(state.feed);
+            return;
+        }
+        _ => {}
+    }
     let word = placed.word;
     let (limit_x, limit_z) = (settings.max_feed_x, settings.max_feed_z);
     let too_high = DiagnosticKind::FeedTooHigh { word, limit_x, limit_z };

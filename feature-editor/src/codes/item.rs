@@ -1,5 +1,6 @@
 //! What a program asks of the lathe: one [`Item`] an action, in execution order.
 
+use interp_core::drive::gearing::Lead;
 use interp_core::units::{Feedrate, Length, Point, Sense};
 
 use super::decimal::Distance;
@@ -9,8 +10,17 @@ use super::decimal::Distance;
 pub enum Feed {
     /// As fast as the axes allow: the limiting axis at its maximum, still along the path.
     Rapid,
-    /// F word.
+    /// F word under G94.
     PerMinute(Feedrate),
+    /// F word under G95: path a turn of the spindle.
+    PerTurn(Lead),
+    /// G32, G33: bound to the spindle's angle. Lines only.
+    Thread {
+        /// A turn of the spindle moves the axis that goes farther (X as a radius) by this.
+        lead: Lead,
+        /// Behind the index, in 2^-16 of a turn.
+        start: u16,
+    },
 }
 
 /// Centre of an arc; it may lie further out than a [`Point`]: within ±6.3 m.

@@ -78,6 +78,20 @@ impl Display for DiagnosticKind {
                 write!(f, "{word} is above the fastest feed of both axes: X {x}, Z {z} mm/min")
             }
             K::FeedMissing(word) => write!(f, "{word} without a feed"),
+            K::FeedPerTurnMissing(word) => write!(f, "{word} without a feed a turn, under G95"),
+            K::LeadMissing(word) => write!(f, "{word} without a lead"),
+            K::LeadNotPositive(word) => write!(f, "{word} is nothing above zero a turn"),
+            K::LeadTooLarge(word) => write!(f, "{word} is above 500 mm a turn"),
+            K::LeadTwice { x, z } => write!(f, "{x} and {z} with one thread"),
+            K::LeadOfOtherAxis { word, axis } => {
+                write!(f, "{word} is not along {}, which goes farther", letter(axis))
+            }
+            K::LeadWithG32(word) => write!(f, "{word} with G32 in one block"),
+            K::FeedWithThread(word) => write!(f, "{word} while G33 is in force"),
+            K::ThreadEmpty(word) => write!(f, "{word}: a thread without motion"),
+            K::ThreadStart(word) => write!(f, "{word} is no whole number from 0 to 360000"),
+            K::ThreadStartSmall(word) => write!(f, "{word} is less than a degree"),
+            K::ThreadStartUnused(word) => write!(f, "{word} belongs to a thread, and this block has none"),
             K::DwellMissing => f.write_str("G4 without P"),
             K::DwellNegative(word) => write!(f, "{word} is a negative time"),
             K::DwellTooLong(word) => write!(f, "{word} is longer than 4294967.295 seconds"),
@@ -131,11 +145,12 @@ fn instead_of_g(word: Word, format: Format) -> &'static str {
     match (format, word.number.code()) {
         (Format::Nc1973, _) => "write G01, G02, G03 or G91",
         (Format::Gcode, Some(17 | 19)) => "delete it: a lathe works in G18",
-        (Format::Gcode, Some(93 | 95 | 98 | 99)) => "write G94 and F in mm (G20: inch) a minute",
+        (Format::Gcode, Some(93 | 98)) => "write G94 and F in mm (G20: inch) a minute",
+        (Format::Gcode, Some(99)) => "write G95 and F in mm (G20: inch) a turn",
         (Format::Gcode, Some(28 | 30)) => "write G0 with the end point",
-        (Format::Gcode, Some(32 | 33 | 76)) => "write the thread as a feature unit: codes have none",
+        (Format::Gcode, Some(76 | 78 | 92)) => "write each pass with G0 and G33",
         (Format::Gcode, Some(40 | 54 | 80 | 97)) => "delete it: nothing else is ever in force",
-        _ => "write one of G0 G1 G2 G3 G4 G7 G8 G18 G20 G21 G61 G61.1 G64 G90 G91 G94",
+        _ => "write one of G0 G1 G2 G3 G4 G7 G8 G18 G20 G21 G32 G33 G61 G61.1 G64 G90 G91 G94 G95",
     }
 }
 
@@ -154,7 +169,7 @@ fn instead_of_letter(word: Word, format: Format) -> &'static str {
         (Format::Nc1973, _) => "use the letters N G X Y I J F M",
         (Format::Gcode, 'Y' | 'J') => "delete it: a lathe moves X and Z",
         (Format::Gcode, 'E') => "write the number without an exponent",
-        (Format::Gcode, _) => "use the letters N G F S M T X Z U W I K R P",
+        (Format::Gcode, _) => "use the letters N G F S M T X Z U W I K R P Q",
     }
 }
 
@@ -186,6 +201,19 @@ impl Display for Remedy {
                 return write!(f, "write a feed up to {} mm/min", PerMinute(limit_x.max(limit_z)));
             }
             K::FeedMissing(_) => "write F in this line or before it",
+            K::FeedPerTurnMissing(_) => "write F in mm (G20: inch) a turn, or G94 with F a minute",
+            K::LeadMissing(_) => "write the lead in mm (G20: inch) a turn: K (I along X) with G33, F with G32",
+            K::LeadNotPositive(_) => "write it above zero, in mm (G20: inch) a turn",
+            K::LeadTooLarge(_) => "write it in mm (G20: inch) a turn; F in mm a minute needs G94",
+            K::LeadTwice { .. } => "write the lead of the axis that goes farther only: K, or I along X",
+            K::LeadOfOtherAxis { axis: Axis::X, .. } => "write I with the lead along X, as a radius",
+            K::LeadOfOtherAxis { axis: Axis::Z, .. } => "write K with the lead along Z",
+            K::LeadWithG32(_) => "write F with the lead, or G33 in place of G32",
+            K::FeedWithThread(_) => "write K with the lead, or G32 F; a feed with the next G1",
+            K::ThreadEmpty(_) => "correct the end point, or delete the line",
+            K::ThreadStart(_) => "write Q in thousandths of a degree, without a point: Q180000 is half a turn",
+            K::ThreadStartSmall(_) => "write thousandths of a degree: Q180000 is half a turn",
+            K::ThreadStartUnused(_) => "delete it, or write G33",
             K::DwellMissing => "write P with the time in seconds",
             K::DwellNegative(_) => "write P without a minus",
             K::DwellTooLong(_) => "write P in seconds, not in milliseconds",
@@ -197,7 +225,7 @@ impl Display for Remedy {
                 return write!(f, "write {absolute} (absolute) or {incremental} (incremental), not both");
             }
             K::EndMissing(_) => "write the end point, even where it equals the start",
-            K::MotionMissing(_) => "write G0, G1, G2 or G3 before it",
+            K::MotionMissing(_) => "write G0, G1, G2, G3, G32 or G33 before it",
             K::ArcWordUnused(_) => "delete it, or write G2 or G3",
             K::DwellWordUnused(_) => "delete it, or write G4 or G64",
             K::ToleranceWithDwell(_) => "write two lines: P is seconds for G4 and a tolerance for G64",

@@ -6,14 +6,18 @@
 //!
 //! # G-code
 //! - G0 rapid, G1 line, G2 and G3 arcs, G4 dwell (P in seconds); G7 X and U as diameter, G8 as radius (at start);
-//!   G18; G20 inch, G21 mm (at start); G90 absolute (at start), G91 incremental; G94.
+//!   G18; G20 inch, G21 mm (at start); G90 absolute (at start), G91 incremental; G94 feed a minute
+//!   (at start), G95 a turn. An F counts for the one in force.
+//! - G33 thread with K, the lead along Z in mm (inch) a turn, or I along X where X goes farther (as a radius); G32 with
+//!   the lead as F, which stays in force for G32 alone. Q from 0 to 360000 is where it starts behind the index, in
+//!   thousandths of a degree; without it 0. On a taper the lead is along the axis that goes farther.
 //! - G61 exact path (at start, unless the settings have a tolerance), G61.1 exact stop, G64 P with the tolerance of
 //!   blends in mm (inch).
 //! - M0 stop, M1 optional stop, M2 and M30 end, M3 M4 M5 spindle. S turns a minute.
 //! - T1 is tool 1 with offset 1; of three or four digits the last two are the offset (T0103).
 //! - X Z absolute (incremental under G91), U W always incremental. I K from the start of the arc to its centre, always
 //!   as radius, the missing one zero; or R, above zero up to 180 degrees, below zero the larger arc.
-//! - F in mm (inch) a minute along the path. F, the motion code and G7 to G91 with G61 to G64 stay in force.
+//! - F in mm (inch) a minute along the path. F, the motion code and G7 to G95 stay in force.
 //! - N and O numbers, comments in ( ) and behind ;, `%` alone on its line, `/` before a line that may be skipped.
 //! - G2 is clockwise seen with Z to the right and X upward; a front tool post mirrors it.
 //!
@@ -25,7 +29,7 @@
 //! F0 is rapid, F1 to F9 are feeds of the settings.
 //!
 //! # Left out
-//! Cycles, threads, offsets and compensation; soft limits; a feed above the limit of one axis only. They need the
+//! Cycles, offsets and compensation; soft limits; a feed above the limit of one axis only. They need the
 //! machine, and a planner checks them.
 
 mod arc;
@@ -41,6 +45,7 @@ mod nc1973;
 mod settings;
 #[cfg(test)]
 mod tests;
+mod thread;
 mod word;
 mod words;
 

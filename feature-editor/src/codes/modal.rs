@@ -1,5 +1,6 @@
 //! What stays in force from line to line.
 
+use interp_core::drive::gearing::Lead;
 use interp_core::units::{Feedrate, Point, Sense};
 
 use super::item::{Feed, PathControl};
@@ -14,12 +15,23 @@ pub(crate) enum Motion {
     Line,
     /// G2, G3.
     Arc(Sense),
+    /// G32, G33.
+    Thread(ThreadCode),
+}
+
+/// How a thread's lead is written.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(crate) enum ThreadCode {
+    /// G32: F.
+    ByFeed,
+    /// G33: K, or I where X goes farther.
+    ByAxis,
 }
 
 /// What is in force, to be shown to an operator.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Modal {
-    /// 0 to 3 for G0 to G3; `None` before the first.
+    /// 0 to 3 for G0 to G3, 32, 33; `None` before the first.
     pub motion: Option<u8>,
     /// G7.
     pub diameter: bool,
@@ -27,8 +39,12 @@ pub struct Modal {
     pub inch: bool,
     /// G91.
     pub incremental: bool,
-    /// The last F.
+    /// G95.
+    pub per_turn: bool,
+    /// The last F under G94.
     pub feed: Option<Feedrate>,
+    /// The last F under G95.
+    pub feed_per_turn: Option<Lead>,
 }
 
 /// Modal state.
@@ -44,8 +60,12 @@ pub(crate) struct State {
     pub(crate) inch: bool,
     /// G91.
     pub(crate) incremental: bool,
-    /// None until one was written. [`Feed::Rapid`] only in the 1973 format.
+    /// G95.
+    pub(crate) per_turn: bool,
+    /// None until one was written, in the feed mode in force. [`Feed::Rapid`] only in the 1973 format.
     pub(crate) feed: Option<Feed>,
+    /// The last F of G32.
+    pub(crate) lead: Option<Lead>,
     /// G61, G61.1, G64.
     pub(crate) control: PathControl,
 }
@@ -59,8 +79,17 @@ impl State {
             diameter: false,
             inch: false,
             incremental: false,
+            per_turn: false,
             feed: None,
+            lead: None,
             control: PathControl::within(settings.corner),
+        }
+    }
+
+    /// Puts G94 or G95 into force. An F of the other one is no feed any more.
+    pub(crate) fn set_per_turn(&mut self, per_turn: bool) {
+        if self.per_turn != per_turn {
+            (self.per_turn, self.feed) = (per_turn, None);
         }
     }
 
@@ -73,13 +102,20 @@ impl State {
                 Some(Motion::Line) => Some(1),
                 Some(Motion::Arc(Sense::Clockwise)) => Some(2),
                 Some(Motion::Arc(Sense::CounterClockwise)) => Some(3),
+                Some(Motion::Thread(ThreadCode::ByFeed)) => Some(32),
+                Some(Motion::Thread(ThreadCode::ByAxis)) => Some(33),
             },
             diameter: self.diameter,
             inch: self.inch,
             incremental: self.incremental,
+            per_turn: self.per_turn,
             feed: match self.feed {
                 Some(Feed::PerMinute(feed)) => Some(feed),
-                Some(Feed::Rapid) | None => None,
+                _ => None,
+            },
+            feed_per_turn: match self.feed {
+                Some(Feed::PerTurn(lead)) => Some(lead),
+                _ => None,
             },
         }
     }

@@ -8,6 +8,7 @@ use super::gcode::Block;
 use super::item::{Action, Centre, Feed};
 use super::modal::{Motion, State};
 use super::settings::Settings;
+use super::thread;
 use super::word::{Placed, Span};
 use super::words::Words;
 
@@ -50,16 +51,20 @@ pub(super) fn motion(
         Motion::Rapid => Some(Feed::Rapid),
         Motion::Line | Motion::Arc(_) => {
             if state.feed.is_none() && !block.has_feed {
-                report.tell(place, DiagnosticKind::FeedMissing(cause.word));
+                let missing =
+                    if state.per_turn { DiagnosticKind::FeedPerTurnMissing } else { DiagnosticKind::FeedMissing };
+                report.tell(place, missing(cause.word));
             }
             state.feed
         }
+        Motion::Thread(code) => thread::feed(block, code, cause, start, end, state, report),
     };
     match motion {
         Motion::Rapid | Motion::Line => {
             unused(words, report);
             Some(Action::Line { end: end?, feed: feed? })
         }
+        Motion::Thread(_) => Some(Action::Line { end: end?, feed: feed? }),
         Motion::Arc(sense) => {
             let sense = if settings.front_post { sense.mirrored() } else { sense };
             let centre = centre(words, place, start, end, sense, state.unit_nm(), settings, report);
@@ -70,7 +75,8 @@ pub(super) fn motion(
 
 /// Block without X, Z, U and W.
 fn without_axis(block: &Block, state: &State, report: &mut Report<'_, impl FnMut(Diagnostic)>) {
-    let is_arc = matches!(state.motion, Some(Motion::Arc(_)));
+    // or a thread: I and K are words of either
+    let is_arc = matches!(state.motion, Some(Motion::Arc(_) | Motion::Thread(_)));
     if let Some(code) = block.motion_word() {
         report.tell(code.span, DiagnosticKind::EndMissing(code.word));
         if !is_arc {

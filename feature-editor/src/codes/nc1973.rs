@@ -175,7 +175,8 @@ fn motion(
         report.tell(place.span, DiagnosticKind::FeedMissing(place.word));
     }
     match motion {
-        Motion::Rapid | Motion::Line => {
+        // this format has no threads
+        Motion::Rapid | Motion::Line | Motion::Thread(_) => {
             for placed in ['I', 'J'].into_iter().filter_map(|letter| words.get(letter)) {
                 report.tell(placed.span, DiagnosticKind::ArcWordUnused(placed.word));
             }

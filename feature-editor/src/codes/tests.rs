@@ -5,6 +5,7 @@ extern crate std;
 mod good;
 mod nc1973;
 mod refused;
+mod threads;
 
 use super::*;
 use interp_core::units::{Axis, Feedrate, Length, Point, Sense};

@@ -8,8 +8,8 @@ use super::diagnostic::{Diagnostic, DiagnosticKind, Report};
 use super::item::{Action, SpindleCommand};
 use super::word::Placed;
 
-/// Letters with a value that a block can have: N O F S T X Z U W I K R P.
-const LETTERS: usize = 13;
+/// Letters with a value that a block can have: N O F S T X Z U W I K R P Q.
+const LETTERS: usize = 14;
 /// Largest N and O.
 const MAX_BLOCK_NUMBER: u32 = 99_999_999;
 

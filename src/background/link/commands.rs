@@ -105,13 +105,17 @@ impl Link {
         let diameter = if modal.diameter { 7 } else { 8 };
         let unit = if modal.inch { 20 } else { 21 };
         let distance = if modal.incremental { 91 } else { 90 };
-        let nm_per_min = modal.feed.map_or(0, |feed| i64::try_from(feed.nm_per_min()).unwrap_or(i64::MAX));
-        let feed = Thousandths(scaled(nm_per_min, 1, if modal.inch { 25_400 } else { 1_000 }));
+        let per_minute = modal.feed.map_or(0, |feed| i64::try_from(feed.nm_per_min()).unwrap_or(i64::MAX));
+        let nm = modal.feed_per_turn.map_or(per_minute, |lead| lead.nm().into());
+        let mode = if modal.per_turn { 95 } else { 94 };
+        let feed = Thousandths(scaled(nm, 1, if modal.inch { 25_400 } else { 1_000 }));
         let speed = scaled(accessories.milli_rpm.into(), 1, 1_000);
         let tool = accessories.tool;
         self.say(
             out,
-            format_args!("[GC:G{motion} G{diameter} G18 G{unit} G{distance} G94 M{spindle} T{tool} F{feed} S{speed}]"),
+            format_args!(
+                "[GC:G{motion} G{diameter} G18 G{unit} G{distance} G{mode} M{spindle} T{tool} F{feed} S{speed}]"
+            ),
         );
     }
 

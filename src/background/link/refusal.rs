@@ -86,18 +86,18 @@ const fn of_text(kind: &DiagnosticKind) -> u8 {
         K::DwellNegative(_) | K::ToleranceNegative(_) | K::Signed(_) => 4,
         K::LineTooLong { .. } => 11,
         // zero or less
-        K::FeedNotPositive(_) => 19,
+        K::FeedNotPositive(_) | K::LeadNotPositive(_) => 19,
         // unsupported
         K::UnknownLetter { .. } | K::UnknownG { .. } | K::UnknownM(_) => 20,
         // two of one modal group
         K::SameGroup { .. } => 21,
         // no feed
-        K::FeedMissing(_) | K::FeedCodeUnset(_) => 22,
+        K::FeedMissing(_) | K::FeedPerTurnMissing(_) | K::LeadMissing(_) | K::FeedCodeUnset(_) => 22,
         // whole number needed
         K::DecimalPoint(_) => 23,
         K::Repeated { .. } => 25,
         // no axis words
-        K::EndMissing(_) => 26,
+        K::EndMissing(_) | K::ThreadEmpty(_) => 26,
         // line number
         K::BlockNumber(_) => 27,
         // missing value
@@ -116,16 +116,28 @@ const fn of_text(kind: &DiagnosticKind) -> u8 {
         // arc without offsets
         K::CentreMissing | K::ArcWordMissing(_) => 35,
         // unused words
-        K::ArcWordUnused(_) | K::DwellWordUnused(_) | K::ToleranceUnused { .. } => 36,
+        K::ArcWordUnused(_) | K::DwellWordUnused(_) | K::ToleranceUnused { .. } | K::ThreadStartUnused(_) => 36,
         K::ToolNumber(_) => 38,
         // out of range; a tolerance that is missing is a warning, and no refusal
-        K::DwellTooLong(_) | K::DwellLong(_) | K::FeedCode(_) | K::ToleranceTooLarge(_) | K::ToleranceMissing(_) => 39,
+        K::DwellTooLong(_)
+        | K::DwellLong(_)
+        | K::FeedCode(_)
+        | K::ToleranceTooLarge(_)
+        | K::ToleranceMissing(_)
+        | K::ThreadStart(_)
+        | K::ThreadStartSmall(_) => 39,
         // above the largest feed
-        K::FeedTooHigh { .. } => 43,
+        K::FeedTooHigh { .. } | K::LeadTooLarge(_) => 43,
         // spindle speed
         K::SpindleSpeed(_) => 44,
         // words that exclude each other
-        K::AbsoluteAndIncremental { .. } | K::CentreAndRadius { .. } | K::ToleranceWithDwell(_) => 48,
+        K::AbsoluteAndIncremental { .. }
+        | K::CentreAndRadius { .. }
+        | K::ToleranceWithDwell(_)
+        | K::LeadTwice { .. }
+        | K::LeadOfOtherAxis { .. }
+        | K::LeadWithG32(_)
+        | K::FeedWithThread(_) => 48,
         // program demarcation; the last two are of a whole program, which the link never checks
         K::TextAfterPercent | K::Empty | K::EndCodeMissing => 57,
         K::CommentOpen => 202,

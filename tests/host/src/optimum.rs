@@ -57,7 +57,8 @@ pub fn seconds(items: &[Item], parameters: &Parameters) -> f64 {
         };
         let to = snap(end);
         let programmed = match feed {
-            Feed::Rapid => f64::INFINITY,
+            // what follows the spindle has no optimum of its own
+            Feed::Rapid | Feed::PerTurn(_) | Feed::Thread { .. } => f64::INFINITY,
             Feed::PerMinute(feed) => feed.nm_per_min() as f64 / 60e6 * f64::from(parameters.feed_override()) / 100.0,
         };
         let block = match round {

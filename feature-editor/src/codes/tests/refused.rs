@@ -147,7 +147,7 @@ fn messages_name_the_word_and_the_numbers() {
             "write a feed up to 5000 mm/min"
         )
     );
-    assert_eq!(text("G95").1, "write G94 and F in mm (G20: inch) a minute");
+    assert_eq!(text("G99").1, "write G95 and F in mm (G20: inch) a turn");
     assert_eq!(text("é").0, "byte C3 (hexadecimal) is no printable ASCII character");
     assert_eq!(text(&" ".repeat(300)).0, "line of 300 bytes");
 }
