@@ -7,6 +7,7 @@ use crate::compensation::Plan;
 use crate::curve::method::Method;
 use crate::law::{MAX_TICKS, Smoothing, SpeedLaw};
 use crate::math::{root, to_u32};
+use crate::threading::Threading;
 use crate::units::{Axis, Feedrate, PulseSize};
 
 /// Clocks of the pulse train in one tick.
@@ -116,6 +117,8 @@ pub struct Machine {
     pub compensation: Plan,
     /// How the speed along the path changes.
     pub smoothing: Smoothing,
+    /// What it does about threads. [`Config::check`] leaves it empty.
+    pub threading: Threading,
 }
 
 /// Speed in the interpolator's unit, rounded to nearest, at least 1.
@@ -203,7 +206,7 @@ impl Config {
         let x = self.x.check(Axis::X, event_min, self.z.pulse_width_ns)?;
         let z = self.z.check(Axis::Z, event_min, self.x.pulse_width_ns)?;
         let (method, compensation, smoothing) = (Method::MinimumDeviation, Plan::default(), Smoothing::NONE);
-        Ok(Machine { x, z, event_min, method, compensation, smoothing })
+        Ok(Machine { x, z, event_min, method, compensation, smoothing, threading: Threading::NONE })
     }
 }
 

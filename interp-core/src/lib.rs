@@ -18,6 +18,7 @@ pub mod ramp;
 pub mod ring;
 pub mod sampled;
 pub mod shaper;
+pub mod threading;
 pub mod times;
 pub mod train;
 pub mod units;

@@ -13,7 +13,7 @@ use super::word::Placed;
 pub(super) const LIMIT_NM: u64 = 500_000_000;
 
 /// Thousandths of a degree in a turn.
-const TURN: u32 = 360_000;
+const TURN: u64 = 360_000;
 
 /// A lead or a feed a turn; `unit_nm` is the length of a written 1.
 pub(super) fn lead(placed: Placed, unit_nm: u32, report: &mut Report<'_, impl FnMut(Diagnostic)>) -> Option<Lead> {
@@ -101,14 +101,14 @@ fn by_axis(
 /// Q: where the thread starts behind the index, in 2^-16 of a turn, rounded to the nearest.
 fn behind(placed: Placed, report: &mut Report<'_, impl FnMut(Diagnostic)>) -> Option<u16> {
     let number = placed.word.number;
-    let Some(part) = number.code().filter(|part| *part <= TURN && !number.has_point()) else {
+    let Some(part) = number.code().map(u64::from).filter(|part| *part <= TURN && !number.has_point()) else {
         report.tell(placed.span, DiagnosticKind::ThreadStart(placed.word));
         return None;
     };
     if (1..1_000).contains(&part) {
         report.tell(placed.span, DiagnosticKind::ThreadStartSmall(placed.word));
     }
-    let part = u64::from(part).saturating_mul(1 << 16).saturating_add(u64::from(TURN / 2)) / u64::from(TURN);
+    let part = part.saturating_mul(1 << 16).saturating_add(TURN / 2) / TURN;
     // a whole turn is none
     u16::try_from(part & 0xffff).ok()
 }

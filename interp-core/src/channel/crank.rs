@@ -1,6 +1,7 @@
 //! Drives other than time: which one turns the crank, their inputs, and what they keep from tick to tick.
 
 use super::lookahead::{Overrides, pace};
+use super::thread_hold::ThreadHold;
 use super::{Active, Channel, Current, State};
 use crate::block::{Feed, Output, Speed, Work};
 use crate::config::TICK_CLOCKS;
@@ -9,7 +10,7 @@ use crate::drive::follower::Follower;
 use crate::drive::gearing::{Gearing, Lead};
 use crate::drive::spindle::{COUNT, Spindle};
 use crate::drive::wheel::{Click, Wheel};
-use crate::drive::{Drive, DriveRefusal, Driven, Inputs};
+use crate::drive::{Drive, DriveRefusal, Driven, Inputs, ThreadStage};
 use crate::math::to_u32;
 use crate::train::Train;
 
@@ -44,6 +45,8 @@ pub(super) struct Crank {
     pub(super) follower: Follower,
     /// From the spindle's rate to path a tick, for feed a turn.
     feed: Option<Proportion>,
+    /// Hold and faults in a thread.
+    pub(super) thread: ThreadHold,
 }
 
 impl Crank {
@@ -53,7 +56,7 @@ impl Crank {
             in_thread: false,
             back: false,
             drive: Drive::Time,
-            driven: Driven { dropped: 0, locked: false, trouble: None },
+            driven: Driven::NONE,
             counts: 0,
             wheel: Wheel::new(),
             pull: None,
@@ -62,6 +65,7 @@ impl Crank {
             tool: 0,
             follower: Follower::new(),
             feed: None,
+            thread: ThreadHold::new(),
         }
     }
 
@@ -76,6 +80,8 @@ impl Crank {
     /// Forgets all motion.
     pub(super) const fn stand(&mut self) {
         self.in_thread = false;
+        self.thread.end();
+        self.driven.stage = ThreadStage::None;
         self.turns = !matches!(self.drive, Drive::Time);
         self.wheel = Wheel::new();
         self.ungear();
@@ -201,9 +207,13 @@ impl<const N: usize> Channel<N> {
         let Current::Motion(active) = &mut self.current else { return };
         self.crank.in_thread = match active.motion.feed {
             Feed::Rapid | Feed::PerTick(_) => false,
-            Feed::Thread(..) => true,
+            Feed::Thread(..) => {
+                self.crank.thread.begin(self.crank.in_thread, &mut self.crank.spindle);
+                true
+            }
             Feed::PerTurn(lead) => {
                 self.crank.prepare(lead);
+                self.crank.thread.begin_feed();
                 active.paced_at = Overrides::AT_LIMIT;
                 false
             }
@@ -218,7 +228,7 @@ impl<const N: usize> Channel<N> {
     /// A tick of a drive other than time.
     #[inline(never)]
     pub(super) fn turn_crank(&mut self, out: &mut impl Train) -> Option<Output> {
-        self.crank.driven = Driven { locked: self.crank.driven.locked, ..Driven::default() };
+        self.crank.driven = Driven { locked: self.crank.driven.locked, ..Driven::NONE };
         let counts = core::mem::take(&mut self.crank.counts);
         if let Current::Dwell(clocks) = &mut self.current {
             if matches!(self.state, State::Running) {
@@ -234,6 +244,13 @@ impl<const N: usize> Channel<N> {
             return self.turn_wheel(click, counts, out);
         }
         self.crank.driven.dropped = i32::from(counts);
+        if self.crank.in_thread {
+            let done = self.tend_thread(out);
+            self.crank.driven.stage = self.crank.thread.stage();
+            if done {
+                return None;
+            }
+        }
         if matches!(self.current, Current::Nothing) && !self.begin_geared() {
             return self.other_work();
         }

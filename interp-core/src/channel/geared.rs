@@ -27,7 +27,7 @@ use crate::train::Train;
 const SMOOTH: u32 = 2;
 
 /// Rate of the spindle, from which on its sense is known: 1/16 of a count a tick.
-const TURNING: u64 = COUNT.unsigned_abs() >> 4;
+pub(super) const TURNING: u64 = COUNT.unsigned_abs() >> 4;
 
 /// Most turns of lead that the line is put back.
 const MOST_TURNS: u32 = 4096;
@@ -63,11 +63,10 @@ impl<const N: usize> Channel<N> {
         let gain = gearing.travel(foretold.acceleration);
         let count = to_u32(gearing.along(COUNT).unsigned_abs());
         let distance = line.wrapping_sub(self.crank.tool);
-        // a thread is not held: it would be spoiled
-        let held = match self.state {
-            State::Resetting => true,
-            State::Holding => !self.crank.in_thread,
-            State::Idle | State::Filling | State::Running | State::Stopped | State::Ended => false,
+        let held = if self.crank.in_thread {
+            self.crank.thread.is_path_held(self.state)
+        } else {
+            matches!(self.state, State::Resetting | State::Holding)
         };
         let before = self.crank.follower.advance();
         let advance = if held {
@@ -84,12 +83,20 @@ impl<const N: usize> Channel<N> {
         self.crank.follower.set(made);
         self.crank.tool = self.crank.tool.wrapping_add(made);
         self.crank.back = made < 0;
+        // a thread that ends where the next one begins goes on
+        let goes_on = self.crank.in_thread && made > 0 && !held;
+        let over = matches!(self.current, Current::Nothing) && !(goes_on && self.enter(false));
         self.speed = to_u32(made.unsigned_abs());
         self.crank.driven.trouble = self.crank.driven.trouble.or(spindle.lost().map(|off| Trouble::Index { off }));
-        if matches!(self.current, Current::Nothing) {
+        self.crank.thread.went(made, foretold.rate, &self.crank.driven);
+        if over {
             // the end of the path
             self.speed = 0;
-            self.crank.stand();
+            if self.crank.thread.is_left() {
+                self.crank.ungear();
+            } else {
+                self.crank.stand();
+            }
         } else if held && made == 0 {
             self.crank.ungear();
         }
@@ -117,7 +124,7 @@ impl<const N: usize> Channel<N> {
     }
 
     /// The advance that the path's ends and joints on either side allow.
-    fn within_path(&mut self, advance: i64) -> i64 {
+    pub(super) fn within_path(&mut self, advance: i64) -> i64 {
         let back = advance < 0;
         let Current::Motion(active) = &self.current else { return advance };
         let motion = &active.motion;
@@ -170,6 +177,9 @@ impl<const N: usize> Channel<N> {
         // what falling in needs, and a little
         let feed = gearing.travel(foretold.rate).unsigned_abs();
         let accel = u64::from(bounds.accel.wrapping_sub(bounds.accel >> 2).max(1));
+        if thread.is_some() && feed > u64::from(bounds.speed) && self.crank.thread.is_guarded() {
+            return self.fail(Trouble::TooFast { needed: to_u32(feed), limit: bounds.speed });
+        }
         let lag = feed.saturating_mul(feed).checked_div(accel.wrapping_mul(2)).unwrap_or(0);
         let lag = lag.saturating_add(feed.wrapping_mul(2)).cast_signed();
         if thread.is_some() {

@@ -17,9 +17,11 @@ mod hands;
 mod lead;
 pub mod lookahead;
 mod margins;
+mod retract;
 mod runner;
 mod single;
 pub mod superposed;
+mod thread_hold;
 mod trail;
 mod walk;
 mod wheeled;
@@ -206,7 +208,7 @@ impl<const N: usize> Channel<N> {
             rest: machine.x.jump.min(machine.z.jump),
             starved: 0,
             waited: 0,
-            crank: Crank::new(),
+            crank: Crank::of(machine),
             hands: Hands::new(machine),
             trail: Trail::new(),
             lead: Lead::new(),
@@ -227,6 +229,7 @@ impl<const N: usize> Channel<N> {
             }
             State::Holding | State::Stopped => {
                 self.pass_single();
+                self.crank.thread.go_on();
                 self.state = State::Running;
                 true
             }
@@ -324,6 +327,7 @@ impl<const N: usize> Channel<N> {
             self.hands.configure(machine);
             self.compensation.configure(&machine.compensation, self.position);
             self.rest = machine.x.jump.min(machine.z.jump);
+            self.crank.configure(machine);
             self.window = Window::new(machine.smoothing);
             self.lead = Lead::new();
         }
@@ -431,6 +435,7 @@ impl<const N: usize> Channel<N> {
         self.take(source);
         let mut output = None;
         let (x, z) = self.by_hand();
+        let x = x.wrapping_add(self.crank.thread.pulses());
         if in_cycle || !self.hands.at_rest() || x != 0 || z != 0 {
             self.superpose(x, z);
             if in_cycle {
@@ -552,7 +557,8 @@ impl<const N: usize> Channel<N> {
 
     /// Whether all is made that has to be added to the program where it stands.
     fn settled(&self) -> bool {
-        !self.superposed.owes() && (!self.compensation.is_on() || self.compensation.settled())
+        let compensated = !self.compensation.is_on() || self.compensation.settled();
+        !self.superposed.owes() && compensated && !self.crank.thread.is_busy()
     }
 
     /// Begins what comes next.
@@ -626,6 +632,8 @@ impl<const N: usize> Channel<N> {
     fn forget(&mut self) {
         self.ahead.clear();
         self.trail.clear();
+        // X stands where a thread has left it
+        self.position.x = self.position.x.wrapping_add(self.crank.thread.take());
         self.crank.stand();
         self.window.clear();
         self.lead = Lead::new();
@@ -645,6 +653,7 @@ impl<const N: usize> Channel<N> {
         let target = if holding { 0 } else { self.hands.cap(active.pace, active.motion.limit) };
         if self.speed == 0 {
             if target == 0 {
+                self.await_spindle();
                 return None;
             }
             self.speed = target.min(self.rest).max(1);

@@ -88,7 +88,7 @@ impl Config {
 }
 
 /// A length in nm with `bits` fraction bits, as pulses with [`FRACTION`] fraction bits, rounded down.
-fn pulses(pulse: PulseSize, nm: i128, bits: u32) -> i64 {
+pub(crate) fn pulses(pulse: PulseSize, nm: i128, bits: u32) -> i64 {
     let scaled = nm.wrapping_mul(i128::from(pulse.denominator())).wrapping_shl(FRACTION.wrapping_sub(bits));
     to_i64(scaled.checked_div_euclid(i128::from(pulse.numerator())).unwrap_or(0))
 }

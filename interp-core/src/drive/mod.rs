@@ -55,6 +55,36 @@ pub enum Trouble {
         /// Counts, positive for too many.
         off: i32,
     },
+    /// The spindle turned by one and a half turns without an index pulse.
+    IndexLost,
+    /// The spindle stopped in a thread.
+    Stopped,
+    /// The spindle turned round in a thread.
+    Reversed,
+    /// A thread or a feed a turn waits for a spindle that does not turn, or has no encoder.
+    NoSpindle,
+    /// The pass can't be repeated: it is longer than the way back that is known.
+    NoWayBack,
+}
+
+/// Where a thread is.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum ThreadStage {
+    /// Nowhere: no thread is being cut.
+    #[default]
+    None,
+    /// The tool stands at its start: the spindle does not turn, its index was not seen, or the groove is still to come.
+    Waiting,
+    /// The path follows the spindle.
+    Cutting,
+    /// Held, or the spindle failed: X is pulled out while the path goes on in step, then the path brakes.
+    Leaving,
+    /// X is out and the path stands.
+    Left,
+    /// Back to the start, with X out.
+    Returning,
+    /// X goes in at the start.
+    Entering,
 }
 
 /// What the drive did in a tick.
@@ -66,11 +96,13 @@ pub struct Driven {
     pub locked: bool,
     /// What could not be done.
     pub trouble: Option<Trouble>,
+    /// Where a thread is.
+    pub stage: ThreadStage,
 }
 
 impl Driven {
     /// Nothing.
-    pub const NONE: Self = Self { dropped: 0, locked: false, trouble: None };
+    pub const NONE: Self = Self { dropped: 0, locked: false, trouble: None, stage: ThreadStage::None };
 }
 
 /// Why the drive was not switched.

@@ -60,6 +60,8 @@ pub struct Spindle {
     zero: Option<i64>,
     /// How far the last one was off.
     off: i32,
+    /// Counts at the last one, or since when it is looked for.
+    indexed: i64,
     angle: i64,
     rate: i64,
     acceleration: i64,
@@ -87,7 +89,18 @@ impl Spindle {
         if turn < Self::COUNTS.0 || turn > Self::COUNTS.1 {
             return None;
         }
-        Some(Self { turn, counter: 0, counts: 0, zero: None, off: 0, angle: 0, rate: 0, acceleration: 0, known: false })
+        Some(Self {
+            turn,
+            counter: 0,
+            counts: 0,
+            zero: None,
+            off: 0,
+            indexed: 0,
+            angle: 0,
+            rate: 0,
+            acceleration: 0,
+            known: false,
+        })
     }
 
     /// Counts a turn.
@@ -123,6 +136,7 @@ impl Spindle {
     fn index(&mut self, latched: u16) {
         let since = i64::from(self.counter.wrapping_sub(latched).cast_signed());
         let at = self.counts.wrapping_sub(since);
+        self.indexed = at;
         match self.zero {
             None => self.zero = Some(at),
             Some(zero) => {
@@ -136,7 +150,13 @@ impl Spindle {
 
     /// Forgets the index: the next pulse is the zero again.
     pub const fn forget_index(&mut self) {
-        (self.zero, self.off) = (None, 0);
+        (self.zero, self.off, self.indexed) = (None, 0, self.counts);
+    }
+
+    /// Whether the spindle has turned by more than one and a half turns without an index pulse.
+    pub const fn is_index_missing(&self) -> bool {
+        let turned = self.counts.wrapping_sub(self.indexed).unsigned_abs();
+        turned > (self.turn as u64).wrapping_add(self.turn as u64 / 2)
     }
 
     /// Angle of the index, once it was seen.

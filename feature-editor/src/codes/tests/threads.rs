@@ -80,12 +80,18 @@ fn a_wrong_lead_is_refused_by_name() {
     assert_eq!(one("G1 F80 Z1\nG32 Z-5"), (1, 3, K::LeadMissing(word("G32"))));
     assert_eq!(one("G33 Z-5 K1\nZ-6"), (1, 3, K::LeadMissing(word("Z-6"))));
     for text in ["K0", "K-1", "K0.0000001"] {
-        assert_eq!(one(&format!("G33 Z-5 {text}")), (9, text.len() as u32, K::LeadNotPositive(word(text))));
+        assert_eq!(
+            one(&format!("G33 Z-5 {text}")),
+            (9, u32::try_from(text.len()).unwrap(), K::LeadNotPositive(word(text)))
+        );
     }
     assert_eq!(one("G32 Z-5 F0"), (9, 2, K::LeadNotPositive(word("F0"))));
     assert_eq!(one("G95 F-1"), (5, 3, K::LeadNotPositive(word("F-1"))));
     for text in ["K500.000001", "K999999999999999999"] {
-        assert_eq!(one(&format!("G33 Z-5 {text}")), (9, text.len() as u32, K::LeadTooLarge(word(text))));
+        assert_eq!(
+            one(&format!("G33 Z-5 {text}")),
+            (9, u32::try_from(text.len()).unwrap(), K::LeadTooLarge(word(text)))
+        );
     }
     assert_eq!(one("G95 F600"), (5, 4, K::LeadTooLarge(word("F600"))));
     assert_eq!(one("G33 Z-5 I1 K2"), (12, 2, K::LeadTwice { x: word("I1"), z: word("K2") }));
@@ -108,7 +114,10 @@ fn a_thread_is_a_line_that_goes_somewhere() {
 #[test]
 fn a_wrong_start_is_refused_by_name() {
     for text in ["Q-1", "Q360001", "Q180.5", "Q180000."] {
-        assert_eq!(one(&format!("G33 Z-5 K1 {text}")), (12, text.len() as u32, K::ThreadStart(word(text))));
+        assert_eq!(
+            one(&format!("G33 Z-5 K1 {text}")),
+            (12, u32::try_from(text.len()).unwrap(), K::ThreadStart(word(text)))
+        );
     }
     assert_eq!(one("G0 Z5 Q1"), (7, 2, K::ThreadStartUnused(word("Q1"))));
     assert_eq!(one("Q90000"), (1, 6, K::ThreadStartUnused(word("Q90000"))));

@@ -12,6 +12,7 @@
 )]
 
 mod bench;
+mod hold;
 mod spindle;
 mod switching;
 mod thread;

@@ -1,0 +1,441 @@
+//! Hold, return and spindle faults in a thread.
+//!
+//! A path that stops in a groove ruins it. So a hold first pulls X out while the path goes on in step with the spindle, and
+//! brakes the path then. At cycle start the tool returns to where the pass began with X out, X goes in, and the pass is
+//! run again from the index. A reset and a fault of the spindle leave the thread in the same way; behind a reset X stays
+//! out, and the position says so.
+//!
+//! ```text
+//!                        +------------------------------------------------+
+//!                        v                                                |
+//!   (a thread begins) Waiting -> Cutting -> Leaving -> Left -> Returning -> Entering
+//!                        |          |          hold, reset,  cycle            |
+//!                        |          |          fault         start     hold: X out again, Left
+//!                        +----------+--> (its end)
+//! ```
+//!
+//! A hold acts at the thread's end instead where X is not to be pulled out, where X leads the thread, and where the pass
+//! has more blocks than the way back is known for.
+
+use super::geared::TURNING;
+use super::retract::Retract;
+use super::{Active, Channel, Current, State};
+use crate::block::Curve;
+use crate::channel::crank::Crank;
+use crate::channel::follower::Pace;
+use crate::compensation;
+use crate::config::{FRACTION_BITS, Machine};
+use crate::drive::follower::Bounds;
+use crate::drive::spindle::Spindle;
+use crate::drive::{Driven, ThreadStage, Trouble};
+use crate::math::{scale, to_i64, to_u32};
+use crate::threading::Threading;
+use crate::train::Train;
+use crate::units::PulseSize;
+
+/// Ticks that a spindle is waited for that does not turn.
+const PATIENCE: u32 = 5_000;
+
+/// Ticks after which a spindle that hardly turns has stopped, and is not about to turn round.
+const SLOW: u32 = 100;
+
+/// Share of its largest speed in a cut, as a shift, below which a spindle hardly turns.
+const HARDLY: u32 = 4;
+
+/// Blocks of a pass that the way back is certainly known for: one less than the trail keeps.
+const MOST_BLOCKS: u32 = 8;
+
+/// What a thread keeps besides its gearing.
+#[derive(Clone, Debug)]
+pub(super) struct ThreadHold {
+    threading: Threading,
+    /// Pulses of X and Z.
+    pulses: (PulseSize, PulseSize),
+    /// Pulses that X goes out by, and how.
+    distance: i32,
+    pace: Pace,
+    stage: ThreadStage,
+    /// X is out: the path brakes.
+    brakes: bool,
+    retract: Retract,
+    fault: Option<Trouble>,
+    /// Ticks that the spindle was waited for.
+    waited: u32,
+    /// Ticks that the spindle has hardly turned.
+    slow: u32,
+    /// Largest rate of the spindle in this cut; its sense is that of the cut.
+    peak: i64,
+    was_locked: bool,
+    /// Blocks begun in this pass.
+    blocks: u32,
+}
+
+impl ThreadHold {
+    pub(super) const fn new() -> Self {
+        Self {
+            threading: Threading::NONE,
+            pulses: (PulseSize::ONE_MICROMETRE, PulseSize::ONE_MICROMETRE),
+            distance: 0,
+            pace: Pace { speed: 1, accel: 1 },
+            stage: ThreadStage::None,
+            brakes: false,
+            retract: Retract::new(),
+            fault: None,
+            waited: 0,
+            slow: 0,
+            peak: 0,
+            was_locked: false,
+            blocks: 0,
+        }
+    }
+
+    fn configure(&mut self, machine: &Machine) {
+        let pulse = machine.x.pulse;
+        self.threading = machine.threading;
+        self.pulses = (pulse, machine.z.pulse);
+        self.distance = pulse.nearest(machine.threading.retract);
+        // a quarter is left for a taper's own motion
+        let part = |rate: u32| i128::from(rate.wrapping_sub(rate >> 2));
+        let rate = |rate: u32| compensation::pulses(pulse, part(rate), FRACTION_BITS).max(1);
+        self.pace = Pace { speed: rate(machine.x.speed), accel: rate(machine.x.accel) };
+    }
+
+    /// A block of a thread begins; `goes_on` where it follows another one.
+    pub(super) fn begin(&mut self, goes_on: bool, spindle: &mut Option<Spindle>) {
+        if goes_on {
+            self.blocks = self.blocks.saturating_add(1);
+        } else {
+            self.blocks = 1;
+            self.wait(spindle);
+        }
+    }
+
+    /// Waits for the spindle at the start. An index in doubt is looked for anew.
+    fn wait(&mut self, spindle: &mut Option<Spindle>) {
+        self.stage = ThreadStage::Waiting;
+        (self.waited, self.slow, self.peak, self.was_locked, self.brakes) = (0, 0, 0, false, false);
+        if let Some(spindle) = spindle
+            && self.threading.guarded
+            && (spindle.is_index_missing() || spindle.lost().is_some())
+        {
+            spindle.forget_index();
+        }
+    }
+
+    /// The thread is over.
+    pub(super) const fn end(&mut self) {
+        self.stage = ThreadStage::None;
+        self.fault = None;
+    }
+
+    /// A feed a turn begins.
+    pub(super) const fn begin_feed(&mut self) {
+        self.waited = 0;
+    }
+
+    /// Cycle start: what was wrong is over.
+    pub(super) const fn go_on(&mut self) {
+        self.fault = None;
+        self.waited = 0;
+    }
+
+    /// Whether faults of the spindle end the cut.
+    pub(super) const fn is_guarded(&self) -> bool {
+        self.threading.guarded
+    }
+
+    pub(super) const fn stage(&self) -> ThreadStage {
+        self.stage
+    }
+
+    /// The pulses of X to be added in a tick.
+    #[inline]
+    pub(super) fn pulses(&mut self) -> i32 {
+        if self.retract.is_live() { self.retract.tick() } else { 0 }
+    }
+
+    /// X stands where it is from now on: by how many pulses that is off the program.
+    pub(super) const fn take(&mut self) -> i32 {
+        self.retract.take()
+    }
+
+    /// Whether the tool is on its way out of a groove, or into one.
+    pub(super) const fn is_busy(&self) -> bool {
+        matches!(self.stage, ThreadStage::Leaving | ThreadStage::Entering) || self.retract.is_live()
+    }
+
+    /// Whether the pass is given up, to be repeated.
+    pub(super) const fn is_left(&self) -> bool {
+        matches!(self.stage, ThreadStage::Leaving | ThreadStage::Left)
+    }
+
+    /// Whether the path brakes, or stands.
+    pub(super) const fn is_path_held(&self, state: State) -> bool {
+        match self.stage {
+            ThreadStage::Leaving => self.brakes,
+            ThreadStage::None | ThreadStage::Waiting => matches!(state, State::Holding | State::Resetting),
+            // where X can't be pulled out a hold waits for the end
+            ThreadStage::Cutting => matches!(state, State::Resetting) || self.fault.is_some(),
+            ThreadStage::Left | ThreadStage::Returning | ThreadStage::Entering => true,
+        }
+    }
+
+    /// The path advanced by `made` with the spindle at `rate`.
+    pub(super) fn went(&mut self, made: i64, rate: i64, driven: &Driven) {
+        if matches!(self.stage, ThreadStage::Waiting) && made != 0 {
+            self.stage = ThreadStage::Cutting;
+            self.peak = rate;
+        }
+        if !matches!(self.stage, ThreadStage::Cutting) {
+            return;
+        }
+        self.was_locked |= driven.locked;
+        if self.threading.guarded && self.fault.is_none() && !driven.locked {
+            self.fault = match driven.trouble {
+                Some(trouble @ Trouble::TooFast { .. }) => Some(trouble),
+                Some(trouble @ Trouble::TooHard { .. }) if self.was_locked => Some(trouble),
+                _ => None,
+            };
+        }
+    }
+
+    /// What is wrong with the spindle while a groove is cut.
+    fn look(&mut self, spindle: &Spindle) -> Option<Trouble> {
+        let rate = spindle.foretold().rate;
+        let forward = if self.peak < 0 { rate.wrapping_neg() } else { rate };
+        let peak = self.peak.unsigned_abs().max(forward.max(0).unsigned_abs());
+        self.peak = if self.peak < 0 { peak.cast_signed().wrapping_neg() } else { peak.cast_signed() };
+        let least = (peak >> HARDLY).max(TURNING).cast_signed();
+        self.slow = if forward < least { self.slow.saturating_add(1) } else { 0 };
+        if forward < least.wrapping_neg() {
+            Some(Trouble::Reversed)
+        } else if self.slow > SLOW {
+            Some(Trouble::Stopped)
+        } else if spindle.is_index_missing() {
+            Some(Trouble::IndexLost)
+        } else {
+            spindle.lost().map(|off| Trouble::Index { off })
+        }
+    }
+
+    /// A tick of waiting at the start. True where the spindle gives no phase yet.
+    fn look_out(&mut self, spindle: &mut Option<Spindle>) -> Option<Trouble> {
+        let turns = spindle.as_ref().is_some_and(|spindle| spindle.foretold().rate.unsigned_abs() >= TURNING);
+        let Some(spindle) = spindle.as_mut().filter(|_| turns) else {
+            self.waited = self.waited.saturating_add(1);
+            return (self.waited > PATIENCE).then_some(Trouble::NoSpindle);
+        };
+        self.waited = 0;
+        if spindle.lost().is_some() {
+            spindle.forget_index();
+        }
+        if !spindle.is_index_missing() {
+            return None;
+        }
+        if spindle.zero().is_none() {
+            return Some(Trouble::IndexLost);
+        }
+        spindle.forget_index();
+        None
+    }
+
+    /// The speed that X is left with beside a motion at a speed.
+    fn pace_beside(&self, active: &Active, speed: u32) -> Pace {
+        let (x, _) = active.motion.curve.end();
+        let length = i128::from(active.motion.length.max(1));
+        let speed = i128::from(x.unsigned_abs()).wrapping_mul(i128::from(speed)) << compensation::FRACTION;
+        // and what a wobble adds
+        let own = to_i64(scale(speed, 5, length.saturating_mul(4)));
+        Pace { speed: self.pace.speed.saturating_sub(own).max(self.pace.speed >> 3).max(1), ..self.pace }
+    }
+}
+
+impl Crank {
+    pub(super) fn of(machine: &Machine) -> Self {
+        let mut crank = Self::new();
+        crank.configure(machine);
+        crank
+    }
+
+    /// Takes other figures.
+    pub(super) fn configure(&mut self, machine: &Machine) {
+        if self.thread.threading.encoder != machine.threading.encoder {
+            self.spindle = Spindle::new(machine.threading.encoder);
+        }
+        self.thread.configure(machine);
+    }
+}
+
+impl<const N: usize> Channel<N> {
+    /// What is wrong with the spindle, where that ended a cut or a wait: from then on until cycle start or reset.
+    pub const fn fault(&self) -> Option<Trouble> {
+        self.crank.thread.fault
+    }
+
+    /// By how many pulses X is pulled out of a thread: that far the tool is off [`position`](Self::position).
+    pub const fn retracted(&self) -> i32 {
+        self.crank.thread.retract.pulses()
+    }
+
+    /// A feed a turn stands, since the spindle does.
+    #[cold]
+    pub(super) fn await_spindle(&mut self) {
+        let Current::Motion(active) = &self.current else { return };
+        let paced = matches!(active.motion.feed, crate::block::Feed::PerTurn(_));
+        if paced
+            && self.overrides.feed > 0
+            && matches!(self.state, State::Running)
+            && self.crank.thread.threading.guarded
+        {
+            self.crank.thread.waited = self.crank.thread.waited.saturating_add(1);
+            if self.crank.thread.waited > PATIENCE {
+                self.crank.thread.waited = 0;
+                self.fail(Trouble::NoSpindle);
+            }
+        }
+    }
+
+    /// Ends a cut or a wait.
+    pub(super) fn fail(&mut self, trouble: Trouble) {
+        self.crank.thread.fault = Some(trouble);
+        if matches!(self.state, State::Running) {
+            self.state = State::Holding;
+        }
+    }
+
+    /// A tick of what a thread needs besides its path. True where the path has no part in it.
+    pub(super) fn tend_thread(&mut self, out: &mut impl Train) -> bool {
+        match self.crank.thread.stage {
+            ThreadStage::None => false,
+            ThreadStage::Waiting => self.tend_start(),
+            ThreadStage::Cutting => self.tend_cut(),
+            ThreadStage::Leaving => self.tend_way_out(),
+            ThreadStage::Left => {
+                let thread = &mut self.crank.thread;
+                let out =
+                    !thread.retract.is_live() && thread.retract.pulses() == thread.distance && thread.distance != 0;
+                if matches!(self.state, State::Running) && out {
+                    thread.stage = ThreadStage::Returning;
+                }
+                true
+            }
+            ThreadStage::Returning => {
+                self.return_to_start(out);
+                true
+            }
+            ThreadStage::Entering => {
+                if !matches!(self.state, State::Running) {
+                    self.pull_out();
+                    self.crank.thread.stage = ThreadStage::Left;
+                } else if !self.crank.thread.retract.is_live() {
+                    self.crank.ungear();
+                    let Crank { thread, spindle, .. } = &mut self.crank;
+                    thread.wait(spindle);
+                }
+                true
+            }
+        }
+    }
+
+    fn tend_start(&mut self) -> bool {
+        if !matches!(self.state, State::Running) || !self.crank.thread.threading.guarded {
+            return false;
+        }
+        let Crank { thread, spindle, .. } = &mut self.crank;
+        let trouble = thread.look_out(spindle);
+        if thread.waited > 0 {
+            // what was geared to it begins anew
+            self.crank.ungear();
+        }
+        if let Some(trouble) = trouble {
+            self.fail(trouble);
+        }
+        trouble.is_some()
+    }
+
+    fn tend_cut(&mut self) -> bool {
+        let running = matches!(self.state, State::Running);
+        if running && self.crank.thread.threading.guarded {
+            let Crank { thread, spindle, gearing, .. } = &mut self.crank;
+            // stopped in the groove, and X could not be pulled out
+            let stuck = gearing.is_none().then_some(Trouble::NoWayBack);
+            let trouble = thread.fault.or(stuck).or(spindle.as_ref().and_then(|spindle| thread.look(spindle)));
+            if let Some(trouble) = trouble {
+                self.fail(trouble);
+            }
+        }
+        if matches!(self.state, State::Holding | State::Resetting) && self.leads_z() {
+            let thread = &mut self.crank.thread;
+            if thread.distance != 0 && thread.blocks <= MOST_BLOCKS {
+                (thread.stage, thread.brakes) = (ThreadStage::Leaving, false);
+                self.pull_out();
+            }
+        }
+        false
+    }
+
+    fn tend_way_out(&mut self) -> bool {
+        let at_end = matches!(self.current, Current::Nothing);
+        let out = !self.crank.thread.retract.is_live();
+        self.crank.thread.brakes = out;
+        if out && (at_end || self.speed == 0) {
+            self.speed = 0;
+            self.crank.ungear();
+            self.crank.thread.stage = ThreadStage::Left;
+        }
+        at_end || self.crank.thread.stage == ThreadStage::Left
+    }
+
+    /// Whether the present block is a line that goes farther along Z.
+    fn leads_z(&self) -> bool {
+        let Current::Motion(active) = &self.current else { return false };
+        let ((x, z), (pulse_x, pulse_z)) = (active.motion.curve.end(), self.crank.thread.pulses);
+        // both with the same denominator; below 2^31 2^24 2^12
+        let nm = |count: i32, pulse: PulseSize, other: PulseSize| {
+            let nm = i128::from(count.unsigned_abs()).wrapping_mul(i128::from(pulse.numerator()));
+            nm.wrapping_mul(i128::from(other.denominator()))
+        };
+        !matches!(active.motion.curve, Curve::Arc(_)) && nm(z, pulse_z, pulse_x) >= nm(x, pulse_x, pulse_z)
+    }
+
+    fn pull_out(&mut self) {
+        let thread = &mut self.crank.thread;
+        let pace = match &self.current {
+            Current::Motion(active) => thread.pace_beside(active, self.speed),
+            Current::Nothing | Current::Dwell(_) => thread.pace,
+        };
+        thread.retract.out(thread.distance, pace);
+    }
+
+    /// A tick of the way back, by time.
+    fn return_to_start(&mut self, out: &mut impl Train) {
+        let tool = self.crank.tool;
+        if tool <= 0 {
+            self.speed = 0;
+            self.crank.ungear();
+            if matches!(self.state, State::Running) {
+                self.crank.thread.retract.home();
+                self.crank.thread.stage = ThreadStage::Entering;
+            }
+            return;
+        }
+        let running = matches!(self.state, State::Running);
+        if running && !self.enter(true) {
+            return self.fail(Trouble::NoWayBack);
+        }
+        let Current::Motion(active) = &self.current else { return };
+        let bounds = Bounds { speed: active.motion.limit, accel: active.motion.accel };
+        let before = self.crank.follower.advance();
+        let advance = if running {
+            self.crank.follower.follow(tool.wrapping_neg(), 0, bounds, 0)
+        } else {
+            before.saturating_add(i64::from(bounds.accel)).min(0)
+        };
+        let advance = self.within_path(advance);
+        let left = self.walk(advance, out);
+        let made = advance.wrapping_sub(left);
+        self.crank.follower.set(made);
+        self.crank.tool = tool.wrapping_add(made);
+        self.speed = to_u32(made.unsigned_abs());
+    }
+}
