@@ -9,6 +9,7 @@
 //! was planned.
 
 use core::fmt;
+use interp_core::drive::Trouble;
 use interp_core::units::Axis;
 
 /// Counters of what must not happen: one that rises is an alarm.
@@ -60,11 +61,27 @@ pub enum Alarm {
     FollowingX,
     /// Of the carriage.
     FollowingZ,
+    /// The spindle stopped in a thread.
+    SpindleStopped,
+    /// The spindle turned round in a thread.
+    SpindleReversed,
+    /// The spindle's index did not come in one and a half turns.
+    IndexLost,
+    /// The index came at another count: counts of the encoder were lost, or there is noise.
+    EncoderNoise,
+    /// A thread or a feed a turn waited for a spindle that does not turn.
+    NoSpindle,
+    /// Lead times spindle speed is more than an axis makes.
+    SpindleTooFast,
+    /// The spindle's speed changed faster than an axis can follow.
+    SpindleTooRough,
+    /// A pass of too many blocks was left and can't be repeated.
+    NoWayBack,
 }
 
 impl Alarm {
     /// All alarms.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 18] = [
         Self::Emergency,
         Self::Underrun,
         Self::Overrun,
@@ -75,6 +92,14 @@ impl Alarm {
         Self::Homing,
         Self::FollowingX,
         Self::FollowingZ,
+        Self::SpindleStopped,
+        Self::SpindleReversed,
+        Self::IndexLost,
+        Self::EncoderNoise,
+        Self::NoSpindle,
+        Self::SpindleTooFast,
+        Self::SpindleTooRough,
+        Self::NoWayBack,
     ];
 
     /// The alarm of an axis that has run into a limit switch.
@@ -102,6 +127,14 @@ impl Alarm {
     pub(super) const fn loses_pulses(self) -> bool {
         match self {
             Self::Emergency | Self::LimitSwitchX | Self::LimitSwitchZ | Self::Homing => false,
+            Self::SpindleStopped
+            | Self::SpindleReversed
+            | Self::IndexLost
+            | Self::EncoderNoise
+            | Self::NoSpindle
+            | Self::SpindleTooFast
+            | Self::SpindleTooRough
+            | Self::NoWayBack => false,
             Self::Underrun | Self::Overrun | Self::Late | Self::Watchdog | Self::FollowingX | Self::FollowingZ => true,
         }
     }
@@ -119,7 +152,34 @@ impl Alarm {
             Self::Homing => 206,
             Self::FollowingX => 207,
             Self::FollowingZ => 208,
+            Self::SpindleStopped => 210,
+            Self::SpindleReversed => 211,
+            Self::IndexLost => 212,
+            Self::EncoderNoise => 213,
+            Self::NoSpindle => 214,
+            Self::SpindleTooFast => 215,
+            Self::SpindleTooRough => 216,
+            Self::NoWayBack => 217,
         }
+    }
+
+    /// The alarm of what the spindle did to a thread.
+    pub const fn of_trouble(trouble: Trouble) -> Self {
+        match trouble {
+            Trouble::Stopped => Self::SpindleStopped,
+            Trouble::Reversed => Self::SpindleReversed,
+            Trouble::IndexLost => Self::IndexLost,
+            Trouble::Index { .. } => Self::EncoderNoise,
+            Trouble::NoSpindle => Self::NoSpindle,
+            Trouble::TooFast { .. } => Self::SpindleTooFast,
+            Trouble::TooHard { .. } => Self::SpindleTooRough,
+            Trouble::NoWayBack => Self::NoWayBack,
+        }
+    }
+
+    /// Whether no pulse was lost: the position is as true as before.
+    pub const fn keeps_position(self) -> bool {
+        self.number() >= 210
     }
 
     /// The alarm of a number; `None` of any other number.
@@ -141,6 +201,14 @@ impl fmt::Display for Alarm {
             Self::Homing => "the home switch was not found",
             Self::FollowingX => "X is not where it should be",
             Self::FollowingZ => "Z is not where it should be",
+            Self::SpindleStopped => "the spindle stopped in a thread",
+            Self::SpindleReversed => "the spindle turned round in a thread",
+            Self::IndexLost => "the spindle turns without an index pulse",
+            Self::EncoderNoise => "the spindle's index came at another count",
+            Self::NoSpindle => "the spindle does not turn",
+            Self::SpindleTooFast => "the spindle is too fast for the lead",
+            Self::SpindleTooRough => "the spindle's speed changed too fast for the lead",
+            Self::NoWayBack => "the thread can't be repeated: its pass has too many blocks",
         })
     }
 }

@@ -87,6 +87,9 @@ impl<'q> Foreground<'q> {
         self.operate();
         let report = self.run(out);
         self.oversee(&report);
+        if let Some(trouble) = self.channel.fault() {
+            self.raise(Alarm::of_trouble(trouble));
+        }
         self.outputs.follow(report.output, report.state, self.alarm, self.desk.motors);
         report
     }
@@ -213,6 +216,11 @@ impl<'q> Foreground<'q> {
     /// Pulses that the motor of an axis is due beyond the program since its position was made known.
     pub const fn compensation(&self, axis: Axis) -> i32 {
         self.channel.compensation(axis)
+    }
+
+    /// By how many pulses X is pulled out of a thread: that far the tool is off [`position`](Self::position).
+    pub const fn retracted(&self) -> i32 {
+        self.channel.retracted()
     }
 
     /// Where the last pulse planned leads: the program's place, and what the operator has added to it.

@@ -4,23 +4,27 @@
 //! full, so the look-ahead never lacks a block that the program has.
 
 use std::collections::VecDeque;
-use std::io;
+use std::{fmt, io};
 
 use feature_editor::codes::{Format, Item};
+use figures::Figures;
 use handcnc::background::compile::{Compiler, Finding};
 use handcnc::background::parameters::Parameters;
+use handcnc::foreground::alarm::Alarm;
 use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
 use handcnc::queue::Queue;
 use interp_core::block::Block;
 use interp_core::channel::{Report, State};
-use interp_core::compensation::pitch::PitchTable;
 use interp_core::config::{Machine, TICK_CLOCKS};
 use interp_core::curve::Step;
 use interp_core::train::{Event, Train};
 use interp_core::units::Axis;
 use measure::{Added, PerAxis};
 
+use crate::pitch_table::Tables;
 use crate::program::{Lines, Program};
+use crate::settings::TABLES;
+use crate::spindle::Turning;
 
 /// What watches a run.
 pub trait Observer {
@@ -231,10 +235,37 @@ pub fn run(
     commands: &[(u64, Command)],
     observer: &mut impl Observer,
 ) -> io::Result<()> {
-    run_fitted(program, format, parameters, machine, &PerAxis::default(), commands, observer)
+    let fit = Fit { tables: &Tables::default(), figures: &Figures::new(TABLES) };
+    run_fitted(program, format, parameters, machine, fit, commands, observer)
 }
 
-/// The same with tables of pitch errors.
+/// What a lathe has that is no parameter.
+#[derive(Copy, Clone, Debug)]
+pub struct Fit<'a> {
+    /// Pitch errors that the control knows.
+    pub tables: &'a Tables,
+    /// Figures of the machine: its spindle turns.
+    pub figures: &'a Figures,
+}
+
+/// An alarm ended a run.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Alarmed {
+    /// Which.
+    pub alarm: Alarm,
+    /// The line in work, 0 for none.
+    pub line: u32,
+}
+
+impl fmt::Display for Alarmed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}: alarm {}: {}", self.line, self.alarm.number(), self.alarm)
+    }
+}
+
+impl std::error::Error for Alarmed {}
+
+/// The same of a lathe with its tables and figures. An alarm is an error that holds [`Alarmed`].
 ///
 /// # Errors
 /// Those of [`run`].
@@ -243,7 +274,7 @@ pub fn run_fitted(
     format: Format,
     parameters: &Parameters,
     machine: &Machine,
-    tables: &PerAxis<Option<PitchTable>>,
+    fit: Fit<'_>,
     commands: &[(u64, Command)],
     observer: &mut impl Observer,
 ) -> io::Result<()> {
@@ -257,11 +288,13 @@ pub fn run_fitted(
     let mut commands = commands.iter().peekable();
     let mut cycle = 0_u64;
     let mut foreground = Foreground::new(machine, position, block_out, command_out);
-    for (axis, table) in [(Axis::X, &tables.x), (Axis::Z, &tables.z)] {
+    for (axis, table) in [(Axis::X, &fit.tables.x), (Axis::Z, &fit.tables.z)] {
         if let Some(table) = table {
             foreground.set_pitch_table(axis, table);
         }
     }
+    let mut turning = Turning::new(fit.figures).map_err(|error| io::Error::other(error.to_string()))?;
+    let mut alarmed = None;
     let full = || io::Error::other("the queue of commands is full");
     command_in.enqueue(Command::FeedOverride(parameters.feed_override())).map_err(|_| full())?;
     command_in.enqueue(Command::OptionalStop(parameters.optional_stop())).map_err(|_| full())?;
@@ -279,7 +312,10 @@ pub fn run_fitted(
             command_in.enqueue(*command).map_err(|_| full())?;
         }
         recorder.next_tick();
+        foreground.read(&turning.read());
         let report = foreground.tick(&mut recorder);
+        turning.tick(&report, foreground.alarm());
+        alarmed = alarmed.or(foreground.alarm().map(|alarm| Alarmed { alarm, line: report.line }));
         if report.in_cycle {
             observer.superposed(recorder.of_this_tick());
             observer.tick(&recorder.events, &report)?;
@@ -290,7 +326,10 @@ pub fn run_fitted(
             observer.progress(source.lines.bytes());
         }
         match report.state {
-            State::Ended | State::Idle => return finish(&mut foreground, observer, &mut recorder),
+            State::Ended | State::Idle => {
+                finish(&mut foreground, observer, &mut recorder)?;
+                return alarmed.map_or(Ok(()), |alarmed| Err(io::Error::other(alarmed)));
+            }
             State::Stopped => {
                 observer.stopped(report.line);
                 command_in.enqueue(Command::Start).map_err(|_| full())?;

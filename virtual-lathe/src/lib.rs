@@ -26,6 +26,7 @@ pub mod serve;
 pub mod settings;
 pub mod sheets;
 pub mod slides;
+pub mod spindle;
 pub mod turn;
 pub mod watch;
 pub mod work;

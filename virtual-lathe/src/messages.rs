@@ -3,9 +3,28 @@
 use std::fmt::Write;
 
 use handcnc::background::compile::Finding;
+use handcnc::foreground::alarm::Alarm;
 
 /// Characters of a long line that are shown.
 const SHOWN: usize = 100;
+
+/// What to do after an alarm.
+pub const fn after(alarm: Alarm) -> &'static str {
+    match alarm {
+        Alarm::Emergency => "close the emergency input",
+        Alarm::Underrun | Alarm::Overrun | Alarm::Late | Alarm::Watchdog => "this is a bug: please report the program",
+        Alarm::LimitSwitchX | Alarm::LimitSwitchZ => "move off the limit switch",
+        Alarm::Homing | Alarm::FollowingX | Alarm::FollowingZ => "look at the switch, the scale and the motor",
+        Alarm::SpindleStopped => "let the spindle turn until the thread has ended, or lighten the cut",
+        Alarm::SpindleReversed => "write M3 or M4 before the thread and M5 behind it",
+        Alarm::IndexLost => "look at the index of the spindle's encoder and at its cable",
+        Alarm::EncoderNoise => "make spindle.encoder_counts 4 times the encoder's lines; look at its cable",
+        Alarm::NoSpindle => "write S and M3 or M4 before threads and feeds a turn",
+        Alarm::SpindleTooFast => "write a smaller S: lead times speed is more than max_feed of an axis",
+        Alarm::SpindleTooRough => "write a smaller S, or raise max_accel, if the machine allows it",
+        Alarm::NoWayBack => "write the thread in fewer blocks",
+    }
+}
 
 /// One finding as text.
 pub fn finding(name: &str, finding: &Finding, text: &[u8]) -> String {

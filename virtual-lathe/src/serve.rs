@@ -17,7 +17,6 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use handcnc::background::link::{Link, Snapshot, realtime};
-use handcnc::background::parameters::Parameters;
 use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
 use handcnc::queue::{Producer, Queue};
 use interp_core::block::Block;
@@ -26,6 +25,8 @@ use interp_core::config::Machine;
 use interp_core::train::{Event, Hash, Levels};
 use interp_core::units::{Axis, Lattice};
 
+use crate::settings::Settings;
+use crate::spindle::Turning;
 use crate::turn;
 
 /// One tick.
@@ -61,7 +62,7 @@ pub fn serve(job: &Job) -> u8 {
     let result = TcpListener::bind((Ipv4Addr::LOCALHOST, job.port)).and_then(|listener| {
         listener.set_nonblocking(true)?;
         tell(format_args!("listening on {}", listener.local_addr()?));
-        run(&listener, job.fast, settings.parameters, &machine)
+        run(&listener, job.fast, settings, &machine)
     });
     match result {
         Ok(()) => turn::DONE,
@@ -78,7 +79,9 @@ fn tell(text: std::fmt::Arguments<'_>) {
     let _ = writeln!(out, "{text}").and_then(|()| out.flush());
 }
 
-fn run(listener: &TcpListener, fast: bool, parameters: Parameters, machine: &Machine) -> io::Result<()> {
+fn run(listener: &TcpListener, fast: bool, settings: Settings, machine: &Machine) -> io::Result<()> {
+    let Settings { parameters, figures, .. } = settings;
+    let mut turning = Turning::new(&figures).map_err(|error| io::Error::other(error.to_string()))?;
     let mut blocks = Queue::<Block, BLOCK_QUEUE>::new();
     let mut commands = Queue::<Command, COMMAND_QUEUE>::new();
     let (blocks, block_out) = blocks.split();
@@ -109,7 +112,9 @@ fn run(listener: &TcpListener, fast: bool, parameters: Parameters, machine: &Mac
             due = now;
         }
         due += TICK;
+        foreground.read(&turning.read());
         let report = foreground.tick(&mut |event: Event| cycle.event(event));
+        turning.tick(&report, foreground.alarm());
         cycle.tick(&report);
         background.snapshot = Snapshot {
             state: report.state,

@@ -84,6 +84,7 @@ pub fn follow(text: &str, settings: &Settings) -> io::Result<Vec<Place>> {
         pulse: [mm(machine.z.pulse), mm(machine.x.pulse)],
         places: Vec::new(),
     };
-    lathe::run_fitted(&program, Format::Gcode, parameters, &machine, &settings.pitch, &[], &mut slides)?;
+    let fit = lathe::Fit { tables: &settings.pitch, figures: &settings.figures };
+    lathe::run_fitted(&program, Format::Gcode, parameters, &machine, fit, &[], &mut slides)?;
     Ok(slides.places)
 }

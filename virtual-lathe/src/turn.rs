@@ -203,7 +203,11 @@ fn perform(program: &Program, job: &Job, settings: &Settings, machine: &Machine)
     let watch = Watch::new(parameters, machine, chooser, trace, bar)?;
     let mut watch = watch.with_work(Motors::new(model), clamped, job.animate.is_some());
     let began = Instant::now();
-    lathe::run_fitted(program, format, parameters, machine, &settings.pitch, &[], &mut watch)?;
+    let fit = lathe::Fit { tables: &settings.pitch, figures: &settings.figures };
+    if let Err(error) = lathe::run_fitted(program, format, parameters, machine, fit, &[], &mut watch) {
+        watch.bar().finish_and_clear();
+        return Err(stopped(&name, error));
+    }
     let wall = began.elapsed();
     watch.bar().finish_and_clear();
     if let Some((count, line)) = watch.stops() {
@@ -231,6 +235,15 @@ fn perform(program: &Program, job: &Job, settings: &Settings, machine: &Machine)
         warnings,
     };
     Ok(Finished { name, watched, run, tool, pulse })
+}
+
+/// Tells why a run did not come to its end.
+fn stopped(name: &str, error: io::Error) -> Failure {
+    let Some(alarmed) = error.get_ref().and_then(|error| error.downcast_ref::<lathe::Alarmed>()) else {
+        return error.into();
+    };
+    eprintln!("error: {name}: {alarmed}\n   = {}; nothing was written", messages::after(alarmed.alarm));
+    Failure::Refused
 }
 
 /// Tells why nothing was clamped.

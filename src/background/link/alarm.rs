@@ -16,7 +16,8 @@ impl Link {
         self.compiler.forget();
         self.outbox.flow = None;
         self.accessories = Accessories::default();
-        self.message(out, format_args!("{alarm}; the position is unverified"));
+        let doubt = if alarm.keeps_position() { "" } else { "; the position is unverified" };
+        self.message(out, format_args!("{alarm}{doubt}"));
         self.say(out, format_args!("ALARM:{}", alarm.number()));
         let waited = !self.pending.is_empty();
         self.pending.clear();

@@ -2,6 +2,7 @@
 
 use interp_core::compensation;
 use interp_core::config::AxisConfig;
+use interp_core::drive::spindle::Spindle;
 use interp_core::law::{Smoothing, SpeedLaw};
 use interp_core::units::Length;
 
@@ -56,6 +57,8 @@ const BOUND: Kind = number(1_000_000, 0, Length::LIMIT_NM as i64);
 const FOLLOWING: Kind = number(1_000, 0, 10_000_000);
 const TEMPERATURE: Kind = number(1_000, -50_000, 150_000);
 const JERK: Kind = number(1, Smoothing::JERK_RANGE.0 as i64, Smoothing::JERK_RANGE.1 as i64);
+const COUNTS: Kind = number(1, 0, Spindle::COUNTS.1 as i64);
+const RETRACT: Kind = number(1_000_000, -100_000_000, 100_000_000);
 const NANOSECONDS: Kind = number(1, 100, 200_000);
 
 const fn definition(
@@ -115,7 +118,9 @@ pub(super) mod index {
     pub(in super::super) const HOME: usize = 6;
     pub(in super::super) const FOLLOWING: usize = 7;
     pub(in super::super) const AXIS_OPERATION: usize = 8;
-    pub(in super::super) const COUNT: usize = 67;
+    pub(in super::super) const ENCODER_COUNTS: usize = 67;
+    pub(in super::super) const THREAD_RETRACT: usize = 68;
+    pub(in super::super) const COUNT: usize = 69;
 }
 
 /// Methods that this build has, in the order of [`Method::ALL`].
@@ -212,4 +217,18 @@ pub static DEFINITIONS: [Definition; index::COUNT] = [
     definition("z.home_feed", "mm/min", FEED, "600", "speed at which the home switch is looked for"),
     definition("z.home_mm", "mm", POSITION, "0", "machine coordinate where the home switch opens"),
     definition("z.following_um", "um", FOLLOWING, "0", "following error that is an alarm, with a scale; 0 for none"),
+    definition(
+        "spindle.encoder_counts",
+        "",
+        COUNTS,
+        "4096",
+        "counts a turn of the spindle's encoder, 4 a line; 0: none",
+    ),
+    definition(
+        "thread.retract_mm",
+        "mm",
+        RETRACT,
+        "2",
+        "how far a hold pulls X out of a thread; below 0 inward; 0: it waits",
+    ),
 ];

@@ -88,7 +88,8 @@ impl Parameters {
             reference: self.temperature(index::THERMAL_REFERENCE),
             screws: self.temperature(index::TEMPERATURE),
         };
-        let machine = Machine { method: self.method(), ..machine }.compensated(&x, &z, temperatures);
+        let (method, threading) = (self.method(), self.threading());
+        let machine = Machine { method, threading, ..machine }.compensated(&x, &z, temperatures);
         let machine = if self.switch(index::HANDWHEELS) { machine.with_hands() } else { machine };
         machine.with_law(self.law(), self.small(index::MAX_JERK))
     }
@@ -247,6 +248,8 @@ mod tests {
             (index::START, "start"),
             (index::LAW, "accel"),
             (index::MAX_JERK, "max_jerk"),
+            (index::ENCODER_COUNTS, "spindle.encoder_counts"),
+            (index::THREAD_RETRACT, "thread.retract_mm"),
         ] {
             assert_eq!(DEFINITIONS[at].name, name);
         }

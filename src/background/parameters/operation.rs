@@ -1,6 +1,7 @@
 //! The parameters of operation: limits, bounds, homing, safe speeds.
 
 use interp_core::config::{Machine, speed_of};
+use interp_core::threading::Threading;
 use interp_core::units::{Axis, Feedrate, Length, PulseSize};
 
 use super::definitions::index;
@@ -35,6 +36,12 @@ impl Parameters {
             safe: speed_of(self.feed(index::SAFE_FEED)),
             dry: speed_of(self.feed(index::DRY_FEED)),
         }
+    }
+
+    /// What the machine does about threads.
+    pub fn threading(&self) -> Threading {
+        let retract = Length::from_nm(self.number(index::THREAD_RETRACT)).unwrap_or_default();
+        Threading { encoder: self.small(index::ENCODER_COUNTS), retract, guarded: true }
     }
 
     /// A length in nm as pulses, to the nearest.

@@ -45,6 +45,20 @@ impl Encoder {
         angle.turns.saturating_mul(self.counts).saturating_add(within)
     }
 
+    /// The count at the index mark that was passed last on the way from one count to another, in either sense; `None` where
+    /// none was.
+    #[must_use]
+    pub fn index_passed(&self, from: i64, to: i64) -> Option<i64> {
+        let turn = |counts: i64| (counts - self.index).div_euclid(self.counts);
+        let (before, now) = (turn(from), turn(to));
+        if before == now {
+            return None;
+        }
+        // going back the mark is left at its lower edge
+        let last = if now > before { now } else { now + 1 };
+        Some(last * self.counts + self.index)
+    }
+
     /// Levels of the channels at an angle.
     #[must_use]
     pub fn channels(&self, angle: Angle) -> Channels {
