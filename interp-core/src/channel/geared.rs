@@ -15,7 +15,7 @@
 //! again. Where the path ends it brakes for the end and leaves the line there; at its start likewise.
 
 use super::{Channel, Current, State};
-use crate::block::Feed;
+use crate::block::{Feed, Motion};
 use crate::drive::follower::{Bounds, approach};
 use crate::drive::gearing::Gearing;
 use crate::drive::spindle::{COUNT, Foretold};
@@ -78,6 +78,7 @@ impl<const N: usize> Channel<N> {
             self.toward(distance, feed, bounds, count)
         };
         let advance = self.within_path(advance);
+        let advance = self.over_thread_joint(advance);
         let left = self.walk(advance, out);
         let made = advance.wrapping_sub(left);
         self.crank.follower.set(made);
@@ -121,6 +122,25 @@ impl<const N: usize> Channel<N> {
         let even = feed.saturating_sub(advance).unsigned_abs() <= u64::from(bounds.accel);
         self.crank.driven.locked = near && even;
         advance
+    }
+
+    /// The advance where it leads over a joint into a part of the thread with another lead: what lies behind the joint is
+    /// made under that one, unless the speed would jump. Then the path falls in with its line as at the start.
+    fn over_thread_joint(&mut self, advance: i64) -> i64 {
+        let back = advance < 0;
+        let room = self.room(back).cast_signed();
+        if !self.crank.in_thread || advance.saturating_abs() <= room {
+            return advance;
+        }
+        let Some(&Motion { feed: Feed::Thread(lead, _), accel, .. }) = self.neighbour(back) else { return advance };
+        let Some(gearing) = self.crank.gearing.as_mut().filter(|gearing| gearing.lead() != lead) else {
+            return advance;
+        };
+        let room = if back { room.wrapping_neg() } else { room };
+        let jump = gearing.converted(advance, lead).wrapping_sub(advance);
+        let beyond = gearing.converted(advance.wrapping_sub(room), lead);
+        gearing.change(lead, self.crank.tool.wrapping_add(room));
+        if jump.unsigned_abs() <= u64::from(accel) { room.wrapping_add(beyond) } else { advance }
     }
 
     /// The advance that the path's ends and joints on either side allow.

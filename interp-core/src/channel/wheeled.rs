@@ -93,7 +93,7 @@ impl<const N: usize> Channel<N> {
     }
 
     /// The motion that follows in a sense.
-    fn neighbour(&self, back: bool) -> Option<&Motion> {
+    pub(super) fn neighbour(&self, back: bool) -> Option<&Motion> {
         if back {
             return self.trail.previous();
         }

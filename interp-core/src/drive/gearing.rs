@@ -8,7 +8,7 @@
 use super::spindle::{ANGLE_BITS, COUNT};
 use crate::config::FRACTION_BITS;
 use crate::curve::proportion::Proportion;
-use crate::math::{scale, to_u32, to_u64};
+use crate::math::{scale, to_i64, to_u32, to_u64};
 
 /// Path per turn of the spindle: pitch times starts; exact, also for threads in inches.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -77,6 +77,7 @@ impl Lead {
 /// Turns an angle into a place.
 #[derive(Copy, Clone, Debug)]
 pub struct Gearing {
+    lead: Lead,
     /// From an angle within a turn to path.
     ratio: Proportion,
     /// A turn of the spindle, [`ANGLE_BITS`].
@@ -102,6 +103,7 @@ impl Gearing {
         let (whole, over) = lead.units();
         let length = turn.unsigned_abs();
         Self {
+            lead,
             ratio: Proportion::new(whole.unsigned_abs(), length, length),
             turn,
             whole,
@@ -134,6 +136,26 @@ impl Gearing {
             self.carry = self.carry.wrapping_add(self.per).wrapping_sub(self.over);
             self.base = self.base.wrapping_sub(1);
         }
+    }
+
+    /// The lead.
+    pub const fn lead(&self) -> Lead {
+        self.lead
+    }
+
+    /// A length of path under the present lead, as it is under another one.
+    pub fn converted(&self, length: i64, lead: Lead) -> i64 {
+        let (whole, _) = lead.units();
+        to_i64(scale(i128::from(length), i128::from(whole), i128::from(self.whole.max(1))))
+    }
+
+    /// Goes on with another lead from where the path is at `joint`, which was or will be passed within a tick.
+    pub fn change(&mut self, lead: Lead, joint: i64) {
+        let beyond = self.base.wrapping_add(self.along(self.part)).wrapping_sub(joint);
+        let place = joint.wrapping_add(self.converted(beyond, lead));
+        let counts = to_u32(self.turn.unsigned_abs() >> ANGLE_BITS);
+        *self = Self { part: self.part, ..Self::new(lead, counts, self.angle, self.reverse) };
+        self.base = place.wrapping_sub(self.along(self.part));
     }
 
     /// Moves the whole path by so much: the phase is given up.

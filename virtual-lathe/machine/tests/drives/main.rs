@@ -13,6 +13,7 @@
 
 mod bench;
 mod hold;
+mod parts;
 mod spindle;
 mod switching;
 mod thread;
