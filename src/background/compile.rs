@@ -18,6 +18,7 @@ use interp_core::curve::method::Method;
 use interp_core::units::{Axis, Lattice, Point};
 
 use super::blend::Blender;
+use super::threads::{Doubt, Threads};
 
 /// Something to say about a program.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -45,6 +46,13 @@ pub enum Finding {
         /// Why.
         why: ArcRefusal,
     },
+    /// Of a thread or a feed a turn.
+    Thread {
+        /// Line of the program.
+        line: u32,
+        /// What.
+        doubt: Doubt,
+    },
 }
 
 impl Finding {
@@ -54,6 +62,7 @@ impl Finding {
             Self::Text(diagnostic) => diagnostic.severity() == Severity::Error,
             Self::Limited { .. } | Self::NoArcs { .. } => false,
             Self::Arc { .. } => true,
+            Self::Thread { doubt, .. } => doubt.is_error(),
         }
     }
 
@@ -61,7 +70,10 @@ impl Finding {
     pub const fn line(&self) -> u32 {
         match self {
             Self::Text(diagnostic) => diagnostic.line,
-            Self::Limited { line, .. } | Self::NoArcs { line, .. } | Self::Arc { line, .. } => *line,
+            Self::Limited { line, .. }
+            | Self::NoArcs { line, .. }
+            | Self::Arc { line, .. }
+            | Self::Thread { line, .. } => *line,
         }
     }
 
@@ -69,7 +81,7 @@ impl Finding {
     pub const fn span(&self) -> (u32, u32) {
         match self {
             Self::Text(diagnostic) => (diagnostic.column, diagnostic.length),
-            Self::Limited { .. } | Self::NoArcs { .. } | Self::Arc { .. } => (1, 0),
+            Self::Limited { .. } | Self::NoArcs { .. } | Self::Arc { .. } | Self::Thread { .. } => (1, 0),
         }
     }
 
@@ -84,6 +96,7 @@ impl Finding {
                 let axis = limited.axis.letter();
                 write!(f, "program a lower F or raise {axis}.max_feed, if the machine allows it")
             }
+            Self::Thread { doubt, .. } => f.write_str(doubt.remedy()),
             Self::NoArcs { .. } => f.write_str("set method to one that knows arcs, or leave it"),
             Self::Arc { why: ArcRefusal::OutOfRange, .. } => {
                 f.write_str("split the arc, or move it nearer to the zero point")
@@ -107,6 +120,7 @@ impl fmt::Display for Finding {
                 let (whole, part) = (um_per_min / 1_000, um_per_min % 1_000 / 100);
                 write!(f, "F is limited to {whole}.{part} mm/min by the {axis} axis in this direction")
             }
+            Self::Thread { doubt, .. } => doubt.fmt(f),
             Self::NoArcs { method, .. } => {
                 write!(f, "method {} knows lines only: arcs are walked by minimum deviation", method.name())
             }
@@ -130,6 +144,7 @@ pub struct Compiler {
     ended: bool,
     /// It was said that the method knows no arcs.
     told: bool,
+    threads: Threads,
 }
 
 impl Compiler {
@@ -138,7 +153,15 @@ impl Compiler {
         let builder = Builder::new(machine, settings.start);
         let at = settings.start;
         let blender = Blender::new(machine);
-        Self { interpreter: Interpreter::new(settings, format), builder, blender, at, ended: false, told: false }
+        Self {
+            interpreter: Interpreter::new(settings, format),
+            builder,
+            blender,
+            at,
+            ended: false,
+            told: false,
+            threads: Threads::default(),
+        }
     }
 
     /// Goes on under other settings and on another machine, with the tool at rest at the settings' `start`. What is
@@ -195,6 +218,12 @@ impl Compiler {
         let (at, ended) = (&mut self.at, &mut self.ended);
         let mut late = None;
         let (told, mut no_arcs) = (&mut self.told, None);
+        let (threads, mut doubt) = (&mut self.threads, None);
+        let mut emit = |item: &Item, blocks: &[Block]| {
+            let found = threads.see(item, blocks);
+            doubt = doubt.or(found.map(|doubt| Finding::Thread { line: item.line, doubt }));
+            emit(item, blocks);
+        };
         self.interpreter.line(
             text,
             &mut |item| {
@@ -202,7 +231,7 @@ impl Compiler {
                     *told = true;
                     no_arcs = Some(Finding::NoArcs { line: item.line, method: builder.method() });
                 }
-                let found = blender.take(builder, &item, *at, emit);
+                let found = blender.take(builder, &item, *at, &mut emit);
                 if let (Action::Line { end, .. } | Action::Arc { end, .. }, None | Some(Finding::Limited { .. })) =
                     (item.action, found)
                 {
@@ -215,9 +244,9 @@ impl Compiler {
         );
         *ended |= self.interpreter.is_ended();
         if *ended {
-            blender.flush(builder, emit);
+            blender.flush(builder, &mut emit);
         }
-        late.into_iter().chain(no_arcs).for_each(report);
+        late.into_iter().chain(no_arcs).chain(doubt).for_each(report);
     }
 
     /// Ends the program: says what only the whole can be blamed for. The caller then lets the held feed

@@ -6,3 +6,4 @@ pub mod inbox;
 pub mod link;
 pub mod parameters;
 pub mod status;
+pub mod threads;

@@ -57,6 +57,7 @@ impl Refusal {
     pub(super) const fn number(&self) -> u8 {
         match self {
             Self::Program(Finding::Text(diagnostic)) => of_text(&diagnostic.kind),
+            Self::Program(Finding::Thread { .. }) => 43,
             Self::Program(Finding::Arc { .. } | Finding::Limited { .. } | Finding::NoArcs { .. }) => 33,
             Self::TooLong => 11,
             Self::Overflow(_) => 200,
