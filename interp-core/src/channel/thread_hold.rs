@@ -218,7 +218,7 @@ impl ThreadHold {
         }
     }
 
-    /// A tick of waiting at the start. True where the spindle gives no phase yet.
+    /// A tick of waiting at the start: why that has no end.
     fn look_out(&mut self, spindle: &mut Option<Spindle>) -> Option<Trouble> {
         let turns = spindle.as_ref().is_some_and(|spindle| spindle.foretold().rate.unsigned_abs() >= TURNING);
         let Some(spindle) = spindle.as_mut().filter(|_| turns) else {
@@ -226,17 +226,13 @@ impl ThreadHold {
             return (self.waited > PATIENCE).then_some(Trouble::NoSpindle);
         };
         self.waited = 0;
-        if spindle.lost().is_some() {
+        let lost = spindle.lost().map(|off| Trouble::Index { off });
+        let trouble = lost.or((spindle.is_index_missing() && spindle.zero().is_none()).then_some(Trouble::IndexLost));
+        if trouble.is_some() || spindle.is_index_missing() {
+            // it is looked for anew
             spindle.forget_index();
         }
-        if !spindle.is_index_missing() {
-            return None;
-        }
-        if spindle.zero().is_none() {
-            return Some(Trouble::IndexLost);
-        }
-        spindle.forget_index();
-        None
+        trouble
     }
 
     /// The speed that X is left with beside a motion at a speed.
@@ -343,7 +339,7 @@ impl<const N: usize> Channel<N> {
         }
         let Crank { thread, spindle, .. } = &mut self.crank;
         let trouble = thread.look_out(spindle);
-        if thread.waited > 0 {
+        if thread.waited > 0 || spindle.as_ref().is_none_or(|spindle| spindle.zero().is_none()) {
             // what was geared to it begins anew
             self.crank.ungear();
         }

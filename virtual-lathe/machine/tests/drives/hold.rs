@@ -345,3 +345,15 @@ fn a_thread_that_becomes_too_fast_is_left() {
     let (trouble, ..) = fault(&with(&[(2_000, Act::Rpm(2_700.0))]));
     assert!(matches!(trouble, Trouble::TooFast { .. } | Trouble::TooHard { .. }), "{trouble:?}");
 }
+
+/// An encoder with other counts than the control was told: the index never comes where whole turns put it.
+#[test]
+fn a_wrong_number_of_counts_is_told_and_not_cut() {
+    let threading = Threading { encoder: 4_000, ..guarded(2_000).threading };
+    let machine = Machine { threading, ..guarded(2_000) };
+    let run = run(&machine, 4_000, &START);
+    let at = run.faults.iter().position(Option::is_some).unwrap();
+    // 96 counts a turn too many
+    assert!(matches!(run.faults[at], Some(Trouble::Index { off: 90..=99 })), "{:?}", run.faults[at]);
+    assert!(run.places.iter().all(|place| place[1] > -2_000), "{:?}", run.places.last());
+}
