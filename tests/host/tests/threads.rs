@@ -1,4 +1,5 @@
 //! Threads and feeds a turn through the whole lathe: text, blocks, train, spindle.
+#![allow(clippy::unwrap_used, reason = "a test")]
 
 use handcnc::foreground::Command;
 use handcnc::foreground::alarm::Alarm;
