@@ -18,7 +18,7 @@ use interp_core::channel::{Report, State};
 use interp_core::config::{Machine, TICK_CLOCKS};
 use interp_core::curve::Step;
 use interp_core::train::{Event, Train};
-use interp_core::units::Axis;
+use interp_core::units::{Axis, Lattice, Point};
 use measure::{Added, PerAxis};
 
 use crate::pitch_table::Tables;
@@ -150,8 +150,17 @@ impl Checked {
     }
 }
 
+/// Watches nothing.
+pub(crate) struct Nobody;
+
+impl Observer for Nobody {
+    fn tick(&mut self, _: &[u32], _: &Report) -> io::Result<()> {
+        Ok(())
+    }
+}
+
 /// The background's side of a run: a program on its way into the queue.
-struct Source {
+pub(crate) struct Source {
     lines: Lines,
     compiler: Compiler,
     ready: VecDeque<Block>,
@@ -160,8 +169,37 @@ struct Source {
 }
 
 impl Source {
+    /// A program from its first line.
+    pub(crate) fn new(lines: Lines, compiler: Compiler) -> Self {
+        Self { lines, compiler, ready: VecDeque::new(), line: 0, ended: false }
+    }
+
+    /// The lattice point that everything compiled so far leads to.
+    pub(crate) fn lattice(&self) -> Lattice {
+        self.compiler.lattice()
+    }
+
+    /// Compiles up to a line, from 1, whose blocks come next; `passed` gets those before. Where the line begins, as
+    /// programmed; `None` where the program ends before.
+    ///
+    /// # Errors
+    /// Those of reading.
+    pub(crate) fn skip_to(&mut self, line: u32, passed: &mut impl FnMut(Block)) -> io::Result<Option<Point>> {
+        while self.line + 1 < line {
+            self.line += 1;
+            let Some(text) = self.lines.next_line()? else { return Ok(None) };
+            let mut emit = |_: &Item, blocks: &[Block]| blocks.iter().copied().for_each(&mut *passed);
+            self.compiler.line(text, &mut emit, &mut |_| {});
+            if self.compiler.is_ended() {
+                return Ok(None);
+            }
+        }
+        self.compiler.flush(&mut |_, blocks| blocks.iter().copied().for_each(&mut *passed));
+        Ok(Some(self.compiler.programmed()))
+    }
+
     /// The next block, compiled when none is ready.
-    fn next(&mut self, observer: &mut impl Observer) -> io::Result<Option<Block>> {
+    pub(crate) fn next(&mut self, observer: &mut impl Observer) -> io::Result<Option<Block>> {
         while self.ready.is_empty() && !self.ended {
             self.line = self.line.saturating_add(1);
             let ready = &mut self.ready;
@@ -280,7 +318,7 @@ pub fn run_fitted(
 ) -> io::Result<()> {
     let compiler = Compiler::new(parameters.settings(), format, machine);
     let position = compiler.lattice();
-    let mut source = Source { lines: program.lines()?, compiler, ready: VecDeque::new(), line: 0, ended: false };
+    let mut source = Source::new(program.lines()?, compiler);
     let mut blocks = Queue::<Block, BLOCK_QUEUE>::new();
     let mut queue = Queue::<Command, COMMAND_QUEUE>::new();
     let (mut block_in, block_out) = blocks.split();

@@ -17,6 +17,7 @@ pub mod lathe;
 pub mod machine_file;
 pub mod messages;
 pub mod motors;
+pub mod operate;
 pub mod output;
 pub mod picture;
 pub mod pitch_table;

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use feature_editor::codes::Format;
 use virtual_lathe::turn::{self, Job};
-use virtual_lathe::{gallery, serve};
+use virtual_lathe::{gallery, operate, serve};
 
 /// HandCNC's virtual lathe: runs programs through the firmware's own code, measures and draws the pulses.
 #[derive(Parser)]
@@ -21,6 +21,8 @@ struct Cli {
 enum Command {
     /// Run a program (the embedded demo without FILE) and report on its pulse train.
     Turn(Turn),
+    /// Operate the lathe as a script says: wheels, joystick, modes, programs, switches; print its final state.
+    Operate(Operate),
     /// Run the lathe for a sender of G-code (Grbl 1.1 protocol) at a TCP port of this computer, until Ctrl-C.
     Serve(Serve),
     /// Run the programs that come with the lathe, and show them on one page.
@@ -69,6 +71,34 @@ struct Turn {
 }
 
 #[derive(Args)]
+struct Operate {
+    /// The script: a line an event, SECONDS WHAT.
+    scenario: PathBuf,
+    /// How the programs that it loads are written.
+    #[arg(long, value_enum, default_value_t = FormatName::Auto)]
+    format: FormatName,
+    /// Machine parameters, in TOML.
+    #[arg(long, value_name = "FILE.toml")]
+    machine: Option<PathBuf>,
+    /// One parameter; beats the machine file. `parameters` lists them.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = name_and_value)]
+    set: Vec<(String, String)>,
+    /// Tables of pitch errors for the control, a line a point: axis, position in mm, error in um.
+    #[arg(long, value_name = "FILE.txt")]
+    pitch_table: Option<PathBuf>,
+    /// Write every step: time in ns, position in pulses.
+    #[arg(long, value_name = "FILE.csv")]
+    trace: Option<PathBuf>,
+    /// Write the final state.
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+    /// Draw what the tool did (SVG or PNG by the name's ending). Without any output option out/NAME.svg, .png and .csv are
+    /// written.
+    #[arg(long, value_name = "FILE.svg|png", value_parser = picture_file)]
+    picture: Option<PathBuf>,
+}
+
+#[derive(Args)]
 struct Serve {
     /// Port on this computer (127.0.0.1) only; 0 takes any that is free. The first line printed names it.
     #[arg(long, value_name = "PORT")]
@@ -102,6 +132,16 @@ enum FormatName {
     Nc1973,
 }
 
+impl FormatName {
+    const fn format(self) -> Option<Format> {
+        match self {
+            Self::Auto => None,
+            Self::Gcode => Some(Format::Gcode),
+            Self::Nc1973 => Some(Format::Nc1973),
+        }
+    }
+}
+
 fn name_and_value(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().into(), value.trim().into())),
@@ -132,11 +172,7 @@ fn main() -> ExitCode {
     match cli.command.unwrap_or_else(|| Command::Turn(Turn::default())) {
         Command::Turn(options) => ExitCode::from(turn::turn(&Job {
             file: options.file,
-            format: match options.format {
-                FormatName::Auto => None,
-                FormatName::Gcode => Some(Format::Gcode),
-                FormatName::Nc1973 => Some(Format::Nc1973),
-            },
+            format: options.format.format(),
             machine: options.machine,
             set: options.set,
             pitch_table: options.pitch_table,
@@ -146,6 +182,16 @@ fn main() -> ExitCode {
             error_picture: options.error_picture,
             motion_picture: options.motion_picture,
             animate: options.animate,
+        })),
+        Command::Operate(options) => ExitCode::from(operate::operate(&operate::Job {
+            scenario: options.scenario,
+            format: options.format.format(),
+            machine: options.machine,
+            set: options.set,
+            pitch_table: options.pitch_table,
+            trace: options.trace,
+            report: options.report,
+            picture: options.picture,
         })),
         Command::Serve(options) => ExitCode::from(serve::serve(&serve::Job {
             port: options.tcp,

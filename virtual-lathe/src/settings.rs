@@ -46,14 +46,22 @@ impl Settings {
     /// # Errors
     /// [`Refusal`], with all that is wrong and not only the first of it.
     pub fn read(file: Option<&Path>, set: &[(String, String)]) -> Result<(Self, Machine), Refusal> {
-        let mut settings = Self::default();
+        Self::default().read_over(file, set)
+    }
+
+    /// The same over these settings, in the place of the defaults.
+    ///
+    /// # Errors
+    /// [`Refusal`], with all that is wrong and not only the first of it.
+    pub fn read_over(mut self, file: Option<&Path>, set: &[(String, String)]) -> Result<(Self, Machine), Refusal> {
+        let settings = &mut self;
         let mut errors = Vec::new();
         if let Some(path) = file {
             let unreadable =
                 |error: &dyn std::fmt::Display| Refusal::Unreadable(format!("{}: {error}", path.display()));
             let bytes = std::fs::read(path).map_err(|error| unreadable(&error))?;
             let text = String::from_utf8(bytes).map_err(|error| unreadable(&error))?;
-            errors = machine_file::read(&path.display().to_string(), &text, &mut settings);
+            errors = machine_file::read(&path.display().to_string(), &text, settings);
         }
         for (name, value) in set {
             if let Err(error) = settings.set(name, value) {
@@ -65,7 +73,7 @@ impl Settings {
         }
         match settings.parameters.machine() {
             Ok(machine) if errors.is_empty() => match settings.model(&machine) {
-                Ok(_) => return Ok((settings, machine)),
+                Ok(_) => return Ok((self, machine)),
                 Err(error) => errors.push(format!("error: {error}")),
             },
             Ok(_) => {}
@@ -83,14 +91,27 @@ impl Settings {
         set: &[(String, String)],
         pitch: Option<&Path>,
     ) -> Result<(Self, Machine), Refusal> {
-        let Some(path) = pitch else { return Self::read(file, set) };
+        Self::default().read_fitted_over(file, set, pitch)
+    }
+
+    /// The same over these settings, in the place of the defaults.
+    ///
+    /// # Errors
+    /// [`Refusal`], with all that is wrong and not only the first of it.
+    pub fn read_fitted_over(
+        self,
+        file: Option<&Path>,
+        set: &[(String, String)],
+        pitch: Option<&Path>,
+    ) -> Result<(Self, Machine), Refusal> {
+        let Some(path) = pitch else { return self.read_over(file, set) };
         let name = path.display().to_string();
         let text = std::fs::read_to_string(path).map_err(|error| Refusal::Unreadable(format!("{name}: {error}")))?;
         let tables = pitch_table::read(&name, &text).map_err(Refusal::Wrong)?;
         let on = |axis: &str, table: bool| table.then(|| (format!("{axis}.pitch_table"), "true".to_owned()));
         let own = on("x", tables.x.is_some()).into_iter().chain(on("z", tables.z.is_some()));
         let set: Vec<(String, String)> = own.chain(set.iter().cloned()).collect();
-        let (mut settings, machine) = Self::read(file, &set)?;
+        let (mut settings, machine) = self.read_over(file, &set)?;
         settings.pitch = tables;
         Ok((settings, machine))
     }

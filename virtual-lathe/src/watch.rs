@@ -255,7 +255,7 @@ fn pulse_mm(machine: &Machine, axis: Axis) -> f64 {
 }
 
 /// The checker's set-up: the parameters as they were typed, not as the interpolator holds them.
-fn setup(parameters: &Parameters, machine: &Machine) -> Setup {
+pub(crate) fn setup(parameters: &Parameters, machine: &Machine) -> Setup {
     let Config { x, z, event_min_ns } = parameters.config();
     #[expect(clippy::cast_precision_loss, reason = "feeds of at most eleven digits")]
     let limits = |axis: &AxisConfig| Limits {

@@ -10,6 +10,7 @@ mod feed;
 mod follow;
 mod geometry;
 mod hash;
+mod motion;
 mod path;
 mod pins;
 mod report;
@@ -21,6 +22,7 @@ pub use checker::Checker;
 pub use deviation::Deviation;
 pub use fault::{FAULTS_KEPT, Fault, FaultKind, Faults};
 pub use feed::FeedError;
+pub use motion::MotorWatch;
 pub use path::{Motion, Shape};
 pub use report::Report;
 pub use setup::{

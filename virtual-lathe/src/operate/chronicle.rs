@@ -1,0 +1,90 @@
+//! What was going on, moment by moment, in bounded memory: what the picture of a scenario is drawn of.
+
+use handcnc::foreground::mode::Mode;
+use handcnc::foreground::shown::Shown;
+use interp_core::units::Lattice;
+use machine::Axes;
+
+use super::event::{What, Wheel};
+
+/// Most moments: beyond it every second one is left out.
+const MOST: usize = 1 << 14;
+
+/// A moment.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// Ticks from the start.
+    pub tick: u64,
+    /// The mode.
+    pub mode: Mode,
+    /// Where the program is, pulses.
+    pub programmed: Lattice,
+    /// Where the slides are, mm: Z and X.
+    pub slides: [f64; 2],
+}
+
+/// Something worth a mark.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mark {
+    /// A wheel is turned: from this tick to that, so many detents.
+    Turn(Wheel, u64, u64, i32),
+    /// Something is refused.
+    Refusal(u64, String),
+    /// An alarm comes.
+    Alarm(u64, String),
+}
+
+/// What was going on.
+#[derive(Clone, Debug, Default)]
+pub struct Chronicle {
+    moments: Vec<Moment>,
+    /// Ticks between two moments, as a power of two.
+    every: u32,
+    marks: Vec<Mark>,
+    alarmed: bool,
+}
+
+impl Chronicle {
+    /// A tick has been played.
+    pub(super) fn tick(&mut self, tick: u64, shown: &Shown, slides: Axes<f64>) {
+        if shown.alarm.is_some() && !self.alarmed {
+            let name = shown.alarm.map(|alarm| super::state::kebab(&format!("{alarm:?}"))).unwrap_or_default();
+            self.marks.push(Mark::Alarm(tick, name));
+        }
+        self.alarmed = shown.alarm.is_some();
+        if !tick.is_multiple_of(1 << self.every) {
+            return;
+        }
+        if self.moments.len() == MOST {
+            self.every += 1;
+            let every = self.every;
+            self.moments.retain(|moment| moment.tick.is_multiple_of(1 << every));
+        }
+        let slides = [slides.z * 1e-6, slides.x * 1e-6];
+        self.moments.push(Moment { tick, mode: shown.mode, programmed: shown.programmed, slides });
+    }
+
+    /// Hands have done something.
+    pub(super) fn turned(&mut self, tick: u64, what: &What) {
+        if let What::Turn(wheel, detents, over_ns) = *what {
+            self.marks.push(Mark::Turn(wheel, tick, tick + over_ns.div_ceil(1_000_000), detents));
+        }
+    }
+
+    /// Something was refused.
+    pub(super) fn refused(&mut self, tick: u64, name: &str) {
+        self.marks.push(Mark::Refusal(tick, name.into()));
+    }
+
+    /// The moments, in order.
+    #[must_use]
+    pub fn moments(&self) -> &[Moment] {
+        &self.moments
+    }
+
+    /// The marks, in the order in which they came.
+    #[must_use]
+    pub fn marks(&self) -> &[Mark] {
+        &self.marks
+    }
+}

@@ -1,0 +1,292 @@
+//! The command `operate`: the virtual lathe under a script of what an operator does.
+//!
+//! [`script`] reads the script, [`control`] runs it: events become requests and readings of the firmware's own foreground,
+//! [`bench`] is the machine that they come from, [`background`] feeds programs, [`state`] is what `expect` looks at.
+//!
+//! What the control makes in a tick is played in the next one, as on the chip. Nothing here takes the clock of the wall, and
+//! what looks like chance comes from a seed: a scenario gives the same state in every run.
+
+mod background;
+mod bench;
+pub mod chronicle;
+mod control;
+pub mod event;
+pub mod expect;
+mod noise;
+pub mod number;
+pub mod script;
+mod spindle;
+pub mod state;
+mod wheels;
+mod words;
+
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use feature_editor::codes::Format;
+use indicatif::ProgressBar;
+use interp_core::config::Machine;
+
+use background::Background;
+use bench::Bench;
+use control::Control;
+pub use control::{Done, Failed};
+use event::{Event, What};
+use script::{Script, ScriptError};
+
+use crate::output::{Pending, Places};
+use crate::settings::{Refusal, Settings};
+use crate::turn;
+
+/// Exit code: an expectation failed, or the pulses were found wrong.
+pub const FAILED: u8 = 1;
+/// Exit code: the script or the parameters are wrong, or a file can't be read or written.
+pub const WRONG: u8 = 2;
+
+/// What `operate` is asked to do.
+#[derive(Clone, Debug, Default)]
+pub struct Job {
+    /// The script.
+    pub scenario: PathBuf,
+    /// Format of the programs that it loads; told from the text without one.
+    pub format: Option<Format>,
+    /// Machine file.
+    pub machine: Option<PathBuf>,
+    /// Parameters by name.
+    pub set: Vec<(String, String)>,
+    /// Tables of pitch errors for the control.
+    pub pitch_table: Option<PathBuf>,
+    /// Where the trace goes.
+    pub trace: Option<PathBuf>,
+    /// Where the state goes, besides standard output.
+    pub report: Option<PathBuf>,
+    /// Where the picture goes.
+    pub picture: Option<PathBuf>,
+}
+
+/// Why a scenario did not run.
+#[derive(Debug)]
+pub enum Unrun {
+    /// All that is wrong with the script.
+    Script(Vec<ScriptError>),
+    /// All that is wrong with the parameters, each as a line of its own.
+    Parameters(Vec<String>),
+    /// A file can't be read or written.
+    Unusable(String),
+}
+
+impl From<io::Error> for Unrun {
+    fn from(error: io::Error) -> Self {
+        Self::Unusable(error.to_string())
+    }
+}
+
+/// Runs a job; the exit code.
+pub fn operate(job: &Job) -> u8 {
+    let name = job.scenario.display().to_string();
+    let outputs = outputs(job);
+    let done = places(job, &outputs).map_err(Unrun::from).and_then(|()| perform(job, outputs.trace.as_deref()));
+    let told = done.and_then(|done| conclude(&name, &outputs, done).map_err(Unrun::from));
+    match told {
+        Ok(code) => code,
+        Err(Unrun::Script(errors)) => {
+            errors.iter().for_each(|error| eprint!("{}", message(&name, error)));
+            eprintln!("{name}: {} error(s); nothing was run", errors.len());
+            WRONG
+        }
+        Err(Unrun::Parameters(errors)) => {
+            errors.iter().for_each(|error| eprintln!("{error}"));
+            eprintln!("   = `parameters` lists all names, units and ranges; nothing was run");
+            WRONG
+        }
+        Err(Unrun::Unusable(message)) => {
+            eprintln!("error: {message}");
+            WRONG
+        }
+    }
+}
+
+/// Runs a scenario; nothing is printed, and only the trace is written, if asked for, but not put in its place.
+///
+/// # Errors
+/// [`Unrun`].
+pub fn perform(job: &Job, trace: Option<&Path>) -> Result<Done, Unrun> {
+    let path = &job.scenario;
+    let unreadable = |error: &dyn std::fmt::Display| Unrun::Unusable(format!("{}: {error}", path.display()));
+    let bytes = std::fs::read(path).map_err(|error| unreadable(&error))?;
+    let text = String::from_utf8(bytes).map_err(|_| unreadable(&"is no text in UTF-8"))?;
+    let Script { events } = script::parse(&text).map_err(Unrun::Script)?;
+    let (settings, machine, events) = prepare(job, events)?;
+    let trace = match trace {
+        Some(path) => Some(Pending::create(path)?),
+        None => None,
+    };
+    let last = events.last().map_or(0, |event| event.tick);
+    let bar = turn::progress(last);
+    bar.set_message("operating");
+    let done = run(settings, machine, events, job.format, trace, bar.clone());
+    bar.finish_and_clear();
+    done
+}
+
+fn run(
+    settings: Settings,
+    machine: Machine,
+    events: Vec<Event>,
+    format: Option<Format>,
+    mut trace: Option<Pending>,
+    bar: ProgressBar,
+) -> Result<Done, Unrun> {
+    let start = settings.parameters.start();
+    if let Some(trace) = &mut trace {
+        let (x, z) = (machine.x.pulse.nearest(start.x), machine.z.pulse.nearest(start.z));
+        writeln!(trace.writer(), "time_ns,x,z\n0,{x},{z}")?;
+    }
+    let wrong = |error: figures::FigureError| Unrun::Parameters(vec![format!("error: {error}")]);
+    let model = settings.model(&machine).map_err(wrong)?;
+    let bench = Bench::new(&settings, model).map_err(wrong)?;
+    let background = Background::new(settings, machine, format);
+    Ok(Control::new(events, bench, background, trace, bar)?.run()?)
+}
+
+/// Parameters of the call, then those that the script sets at second 0, which describe the machine from its start; those
+/// that it sets later are tried. The events that are left, with the places of programs relative to the script's folder.
+fn prepare(job: &Job, mut events: Vec<Event>) -> Result<(Settings, Machine, Vec<Event>), Unrun> {
+    let mut settings = Settings::default();
+    // a name and a value of the list
+    let _ = settings.set("handwheels", "true");
+    let (mut settings, mut machine) = settings
+        .read_fitted_over(job.machine.as_deref(), &job.set, job.pitch_table.as_deref())
+        .map_err(|refusal| match refusal {
+            Refusal::Unreadable(message) => Unrun::Unusable(message),
+            Refusal::Wrong(errors) => Unrun::Parameters(errors),
+        })?;
+    let mut errors = Vec::new();
+    let (mut later, mut first) = (settings.clone(), settings.clone());
+    for event in &events {
+        let What::Set(name, value) = &event.what else { continue };
+        match set(&later, name, value, event.tick == 0) {
+            Ok((next, its)) => {
+                if event.tick == 0 {
+                    (first, machine) = (next.clone(), its);
+                }
+                later = next;
+            }
+            Err((cause, remedy)) => errors.push(error_of(event, cause, remedy)),
+        }
+    }
+    if !errors.is_empty() {
+        errors.sort_by_key(|error| error.line);
+        return Err(Unrun::Script(errors));
+    }
+    settings = first;
+    events.retain(|event| event.tick > 0 || !matches!(event.what, What::Set(..)));
+    let folder = job.scenario.parent().unwrap_or(Path::new(""));
+    for event in &mut events {
+        if let What::Load(file) = &mut event.what {
+            *file = folder.join(&*file);
+        }
+    }
+    Ok((settings, machine, events))
+}
+
+/// Settings with one set, and their machine.
+fn set(settings: &Settings, name: &str, value: &str, at_first: bool) -> Result<(Settings, Machine), script::Wrong> {
+    let remedy = "the command parameters lists all names, units and ranges";
+    let mut next = settings.clone();
+    next.set(name, value).map_err(|cause| (format!("{name} = {value}: {cause}"), remedy.to_owned()))?;
+    let fixed = handcnc::background::parameters::Parameters::new().iter().all(|(known, _)| known.name != name)
+        || matches!(name, "start" | "x.pulse_nm" | "z.pulse_nm" | "handwheels");
+    if fixed && !at_first {
+        return Err((format!("{name} can't change while the machine is on"), "set it at second 0".into()));
+    }
+    let machine = next.parameters.machine().map_err(|error| (error.to_string(), remedy.to_owned()))?;
+    next.model(&machine).map_err(|error| (error.to_string(), remedy.to_owned()))?;
+    Ok((next, machine))
+}
+
+fn error_of(event: &Event, cause: String, remedy: String) -> ScriptError {
+    let text = event.text.clone();
+    let blank = text.chars().take_while(|letter| letter.is_whitespace()).count();
+    let number = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
+    let span = (number(blank + 1), number(text.chars().count().saturating_sub(blank)));
+    ScriptError { line: event.line, span, text, cause, remedy }
+}
+
+/// An error as a person reads it.
+#[must_use]
+pub fn message(name: &str, error: &ScriptError) -> String {
+    let ScriptError { line, span: (column, length), text, cause, remedy } = error;
+    let shown: String = text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
+    let blank = " ".repeat(line.to_string().len());
+    let pad = " ".repeat(column.saturating_sub(1) as usize);
+    let mark = "^".repeat((*length).max(1) as usize);
+    format!(
+        "error: {name}:{line}:{column}: {cause}\n {blank} |\n {line} | {shown}\n {blank} | {pad}{mark}\n   = {remedy}\n"
+    )
+}
+
+/// Files to write.
+struct Outputs {
+    trace: Option<PathBuf>,
+    report: Option<PathBuf>,
+    pictures: Vec<PathBuf>,
+}
+
+/// Those asked for, or trace and pictures under `out` where none was.
+fn outputs(job: &Job) -> Outputs {
+    let Job { trace, report, picture, .. } = job.clone();
+    if trace.is_some() || report.is_some() || picture.is_some() {
+        return Outputs { trace, report, pictures: picture.into_iter().collect() };
+    }
+    let stem = job.scenario.file_stem().map_or_else(|| "scenario".into(), |stem| stem.to_string_lossy().into_owned());
+    let named = |ending: &str| Path::new("out").join(format!("{stem}.{ending}"));
+    Outputs { trace: Some(named("csv")), report: None, pictures: vec![named("svg"), named("png")] }
+}
+
+fn places(job: &Job, outputs: &Outputs) -> io::Result<()> {
+    let mut places = Places::default();
+    for input in [&job.scenario].into_iter().chain(&job.machine).chain(&job.pitch_table) {
+        places.input(input);
+    }
+    outputs.trace.iter().chain(&outputs.report).chain(&outputs.pictures).try_for_each(|path| places.output(path))
+}
+
+/// Writes what was asked for, and tells; the exit code.
+fn conclude(name: &str, outputs: &Outputs, mut done: Done) -> io::Result<u8> {
+    let json = format!("{:#}\n", done.state);
+    let mut files: Vec<Pending> = done.trace.take().into_iter().collect();
+    if let Some(path) = &outputs.report {
+        let mut file = Pending::create(path)?;
+        file.writer().write_all(json.as_bytes())?;
+        files.push(file);
+    }
+    let mut told = String::new();
+    for failed in &done.failed {
+        let _ = writeln!(told, "failed: {name}:{}: {}\n   | {}", failed.line, failed.cause, failed.text.trim());
+    }
+    if done.endless {
+        let _ = writeln!(
+            told,
+            "warning: {name}: something still moves or runs a minute after the last event: write an end"
+        );
+    }
+    let broken = done.broken.total();
+    if broken > 0 {
+        let _ = writeln!(
+            told,
+            "fault: {name}: {broken} broken rules of the motors. This is a bug: please report the scenario"
+        );
+        for fault in done.broken.first() {
+            let _ = writeln!(told, "   {fault}");
+        }
+    }
+    for file in files {
+        let _ = writeln!(told, "wrote {}", file.keep()?.display());
+    }
+    eprint!("{told}");
+    // the files are in place: a reader that has gone is no failure
+    let _ = io::stdout().lock().write_all(json.as_bytes());
+    Ok(if done.failed.is_empty() && broken == 0 { turn::DONE } else { FAILED })
+}
