@@ -184,5 +184,6 @@ impl Bench {
 
 /// A tick in which no pin steps.
 fn idle(levels: Levels) -> u32 {
-    Event::new(levels.without_steps(), TICK_CLOCKS).word()
+    let low = AXES.into_iter().fold(levels, |levels, axis| levels.with_step(axis, false));
+    Event::new(low, TICK_CLOCKS).word()
 }
