@@ -13,6 +13,9 @@ use interp_core::units::{Axis, Lattice, PulseSize};
 /// Ticks between two pulses of correction.
 const EVERY: u8 = 32;
 
+/// Readings until the places of the last two ticks are those of coordinates that were just made known.
+const KNOWN: u8 = 2;
+
 /// Ticks that the error is smoothed over, as a shift.
 const SMOOTH: u32 = 4;
 
@@ -57,13 +60,16 @@ impl ClosedLoop {
         let nm = nm.checked_div_euclid(i64::from(pulse.denominator())).unwrap_or(0);
         let at = self.loops.of_mut(axis);
         let off = i64::from(reading).wrapping_sub(nm);
+        at.waited = at.waited.saturating_add(1);
         let Some(zero) = at.zero else {
-            at.zero = Some(off);
+            // only then the place of two calls before is told as it is now
+            if at.waited > KNOWN {
+                at.zero = Some(off);
+            }
             return (0, 0);
         };
         let error = off.wrapping_sub(zero);
         at.error = at.error.wrapping_add(error.wrapping_sub(at.error >> SMOOTH));
-        at.waited = at.waited.saturating_add(1);
         let size = i64::from(pulse.numerator()).checked_div(i64::from(pulse.denominator())).unwrap_or(1).max(1);
         if at.waited < EVERY || (at.error >> SMOOTH).saturating_abs() <= size {
             return (error, 0);

@@ -8,7 +8,7 @@ use interp_core::drive::wheel::Click;
 pub(super) struct Wheels {
     /// What a detent is worth; `None` for as much as it is turned fast.
     scale: Option<Click>,
-    /// Counts a tick of each wheel, smoothed, with 8 fraction bits.
+    /// Counts a tick of each wheel, smoothed, with [`RATE_BITS`] fraction bits.
     rates: PerAxis<u32>,
     /// Counts that were dropped so far.
     pub(super) dropped: PerAxis<i32>,
@@ -18,6 +18,9 @@ pub(super) struct Wheels {
 
 /// Ticks that a wheel's rate is smoothed over, as a shift.
 const SMOOTH: u32 = 5;
+
+/// Fraction bits of a wheel's rate.
+const RATE_BITS: u32 = 16;
 
 const CLICKS: [Click; 3] = Click::DECADES;
 
@@ -39,12 +42,13 @@ impl Wheels {
         }
     }
 
-    /// Takes a tick's counts: what a detent of this wheel is worth now.
+    /// Takes a tick's counts: what a detent of this wheel is worth now, by how fast it was turned until then.
     pub(super) fn click(&mut self, axis: interp_core::units::Axis, counts: i16) -> Click {
         let rate = self.rates.of_mut(axis);
-        let now = u32::from(counts.unsigned_abs()) << 8;
-        *rate = rate.wrapping_sub(*rate >> SMOOTH).wrapping_add(now >> SMOOTH);
-        self.scale.unwrap_or_else(|| by_speed(*rate))
+        let before = *rate;
+        let now = u32::from(counts.unsigned_abs()) << RATE_BITS;
+        *rate = before.wrapping_sub(before >> SMOOTH).wrapping_add(now >> SMOOTH);
+        self.scale.unwrap_or_else(|| by_speed(before >> (RATE_BITS - 8)))
     }
 
     /// Notes counts that were dropped.
@@ -55,6 +59,8 @@ impl Wheels {
 }
 
 /// Velocity-scaled: 1 um a detent where the wheel creeps, growing with the square of its speed to 100 um at 50 detents a second.
+///
+/// * `rate`: counts a tick with 8 fraction bits.
 fn by_speed(rate: u32) -> Click {
     // 50 detents a second are 0.2 counts a tick: a rate of 51
     let square = rate.saturating_mul(rate).min(51 * 51);
@@ -74,6 +80,15 @@ mod tests {
         wheels.set_scale(None);
         assert_eq!(wheels.click(Axis::X, 0), CLICKS[0]);
         let mut last = 0;
+        // a count every 50 ticks, 5 detents a second: hardly more than 1 um
+        for ticks in 0..1_000 {
+            let counts = i16::from(ticks % 50 == 0);
+            let click = wheels.click(Axis::X, counts);
+            if counts > 0 {
+                last = click.length();
+            }
+        }
+        assert!((1_000 << 12..1_500 << 12).contains(&last), "{}", last >> 12);
         for ticks in 0..400 {
             // a count every five ticks: 50 detents a second
             let click = wheels.click(Axis::X, i16::from(ticks % 5 == 0));
