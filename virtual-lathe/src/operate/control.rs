@@ -93,6 +93,9 @@ pub(super) struct Control {
     began: Point,
     /// What the last ticks made reported, the newer one last.
     reports: [Report; 2],
+    /// Path that was left of the motion then, nm.
+    to_go: u64,
+    power: bool,
     endless: bool,
 }
 
@@ -126,6 +129,8 @@ impl Control {
             unlocking: false,
             began: NOWHERE,
             reports: [Report::IDLE; 2],
+            to_go: 0,
+            power: true,
             endless: false,
         })
     }
@@ -141,8 +146,11 @@ impl Control {
                 break;
             }
         }
-        let power = self.shown.outputs.motors || kept.is_none();
-        let state = self.state(power);
+        let state = self.state();
+        // what moves when a script says `end` is not compared with a rest that does not follow
+        if self.busy + 1 >= self.tick {
+            self.watch.cut();
+        }
         let broken = self.watch.finish();
         let Self { failed, chronicle, trace, endless, .. } = self;
         Ok(Done { state, failed, broken, chronicle, trace, endless })
@@ -206,6 +214,7 @@ impl Control {
             }
         }
         self.bench.spindle_percent(100);
+        self.power = true;
         self.shown = foreground.shown();
     }
 
@@ -240,7 +249,9 @@ impl Control {
 
     fn measure(&mut self, played: &[u32]) -> io::Result<()> {
         let [before, now] = self.reports;
-        let joint = before.line != now.line || before.state != now.state;
+        let next = self.shown.distance_to_go > self.to_go;
+        self.to_go = self.shown.distance_to_go;
+        let joint = next || before.line != now.line || before.state != now.state;
         if joint {
             self.watch.joint();
         }
@@ -310,7 +321,7 @@ impl Control {
         self.watch.cut();
         self.bench.follow(None, true);
         self.background.stop();
-        self.unlocking = false;
+        (self.unlocking, self.power) = (false, false);
         self.reports = [Report::IDLE; 2];
         self.shown.outputs.motors = false;
         self.shown.outputs.spindle = false;
@@ -338,7 +349,7 @@ impl Control {
             What::PowerOn => return Next::On,
             What::End => return Next::End,
             What::Expect(expect) => {
-                let state = self.state(false);
+                let state = self.state();
                 self.expect(event, expect.check(&state));
             }
             what if self.by_hand(what) => {}
@@ -409,7 +420,7 @@ impl Control {
             What::PowerOn => self.refuse(line, "power-is-on", "the power is on already"),
             What::Expect(expect) => {
                 self.shown = foreground.shown();
-                let state = self.state(true);
+                let state = self.state();
                 self.expect(event, expect.check(&state));
             }
             What::End => return Ok(Next::End),
@@ -553,7 +564,7 @@ impl Control {
         }
     }
 
-    fn state(&self, power: bool) -> Value {
+    fn state(&self) -> Value {
         let at = self.watch.position();
         state::json(&View {
             shown: &self.shown,
@@ -562,7 +573,7 @@ impl Control {
             tick: self.tick,
             train_hash: self.watch.train_hash(),
             played: Lattice { x: at.x, z: at.z },
-            power,
+            power: self.power,
         })
     }
 }
