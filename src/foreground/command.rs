@@ -3,6 +3,7 @@
 use super::contour::Contour;
 use super::mode::Mode;
 use super::settings::Settings;
+pub use super::threads::PickUpStep;
 use interp_core::block::Feed;
 use interp_core::config::Machine;
 use interp_core::drive::wheel::Click;
@@ -80,4 +81,8 @@ pub enum Command {
     Spindle(i32),
     /// Go back into what was interrupted.
     Resume,
+    /// Engage or disengage the threading lever.
+    Lever(bool),
+    /// Pick up a thread that is there.
+    PickUp(PickUpStep),
 }

@@ -8,10 +8,12 @@ use super::mode::Mode;
 use super::power::Power;
 use super::refusal::Refusal;
 use super::settings::Settings;
+use super::threads::{Lever, PickUp};
 use super::wheels::Wheels;
 use interp_core::block::{Feed, Speed};
 use interp_core::config::Machine;
 use interp_core::drive::Trouble;
+use interp_core::drive::gearing::Lead;
 use interp_core::units::{Axis, Lattice, PulseSize};
 
 /// The operator's side of a lathe.
@@ -58,6 +60,11 @@ pub(super) struct Desk {
     pub(super) place: Lattice,
     /// Ticks since power-on.
     pub(super) ticks: u32,
+    /// The thread that is cut by hand.
+    pub(super) lever: Lever,
+    pub(super) pick_up: PickUp,
+    /// Lead of the groove that is cut by hand.
+    pub(super) thread_lead: Option<Lead>,
     refused: Option<Refusal>,
     refusals: u32,
 }
@@ -93,6 +100,9 @@ impl Desk {
             nulling: false,
             place: NOWHERE,
             ticks: 0,
+            lever: Lever::Out,
+            pick_up: PickUp::None,
+            thread_lead: None,
             refused: None,
             refusals: 0,
         }
@@ -135,12 +145,6 @@ impl Desk {
             x: programmed.x.wrapping_add(offset.x).wrapping_add(kept.x).wrapping_add(wear.x),
             z: programmed.z.wrapping_add(offset.z).wrapping_add(kept.z).wrapping_add(wear.z),
         }
-    }
-
-    /// The same in the machine's own coordinates.
-    pub(super) const fn own_place(&self, programmed: Lattice, offset: Lattice) -> Lattice {
-        let at = self.physical(programmed, offset);
-        Lattice { x: at.x.wrapping_add(self.datum.x), z: at.z.wrapping_add(self.datum.z) }
     }
 
     /// How many pulses an axis that is at `at`, in the machine's own coordinates, may go to minus and to plus.

@@ -22,6 +22,7 @@ pub mod rehearsal;
 mod requests;
 pub mod settings;
 pub mod shown;
+mod threads;
 pub mod train_queue;
 mod wheels;
 
@@ -218,14 +219,21 @@ impl<'q> Foreground<'q> {
         self.channel.compensation(axis)
     }
 
-    /// By how many pulses X is pulled out of a thread: that far the tool is off [`position`](Self::position).
+    /// By how many pulses X is pulled out of a thread; [`position`](Self::position) has it.
     pub const fn retracted(&self) -> i32 {
         self.channel.retracted()
     }
 
     /// Where the last pulse planned leads: the program's place, and what the operator has added to it.
     pub const fn position(&self) -> Lattice {
-        self.desk.physical(self.channel.position(), self.channel.offset())
+        let at = self.desk.physical(self.channel.position(), self.channel.offset());
+        Lattice { x: at.x.wrapping_add(self.channel.retracted()), z: at.z }
+    }
+
+    /// The same in the machine's own coordinates.
+    const fn place(&self) -> Lattice {
+        let (at, datum) = (self.position(), self.desk.datum);
+        Lattice { x: at.x.wrapping_add(datum.x), z: at.z.wrapping_add(datum.z) }
     }
 
     /// Where the program is.

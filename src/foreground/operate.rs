@@ -39,7 +39,7 @@ impl Foreground<'_> {
             }
             return;
         }
-        let place = self.desk.own_place(self.channel.position(), self.channel.offset());
+        let place = self.place();
         for axis in AXES {
             let counts = *counts.of(axis);
             let click = self.desk.wheels.click(axis, counts);
@@ -147,7 +147,7 @@ impl Foreground<'_> {
 
     /// Whether the path that was built stays inside the soft limits.
     fn within_limits(&self) -> bool {
-        let mut at = self.desk.own_place(self.channel.position(), self.channel.offset());
+        let mut at = self.place();
         self.desk.own.extents().all(|(least, most, end)| {
             let inside = AXES.into_iter().all(|axis| {
                 let limits = self.desk.settings.axes.of(axis).limits;
@@ -182,7 +182,7 @@ impl Foreground<'_> {
         }
         self.watch_switches();
         self.watch_limits();
-        self.desk.place = self.desk.own_place(self.channel.position(), self.channel.offset());
+        self.desk.place = self.place();
         self.desk.closed_loop.made(self.desk.place);
         self.desk.ticks = self.desk.ticks.wrapping_add(1);
     }
@@ -197,7 +197,7 @@ impl Foreground<'_> {
         if matches!(self.desk.mode, Mode::Homing) {
             return;
         }
-        let at = self.desk.own_place(self.channel.position(), self.channel.offset());
+        let at = self.place();
         for axis in AXES {
             let (moved, Ends { plus, minus }) =
                 (part(at, axis).wrapping_sub(part(self.desk.place, axis)), *self.desk.inputs.ends.of(axis));
@@ -212,7 +212,7 @@ impl Foreground<'_> {
         if !matches!(self.channel.state(), State::Running) || self.channel.speed() == 0 {
             return;
         }
-        let at = self.desk.own_place(self.channel.position(), self.channel.offset());
+        let at = self.place();
         let programmed = self.channel.position();
         for axis in AXES {
             if !self.desk.verified.of(axis) {

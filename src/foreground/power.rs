@@ -22,6 +22,8 @@ pub(super) enum Phase {
     Feed { axis: Axis, plus: bool },
     /// Along the contour.
     Contour,
+    /// A thread by lever.
+    Thread,
     /// Back to where it began.
     Return,
     /// Brakes.
@@ -88,6 +90,8 @@ impl Power {
         match self.phase {
             Phase::Rest => false,
             Phase::Feed { axis: driven, .. } => driven == axis,
+            // beside a thread X is the operator's
+            Phase::Thread => matches!(axis, Axis::Z),
             Phase::Contour | Phase::Return | Phase::Brake => true,
         }
     }
@@ -120,6 +124,7 @@ impl Foreground<'_> {
             }
             Phase::Feed { axis, plus } => self.arrived(axis, plus),
             Phase::Contour => self.pull_on(),
+            Phase::Thread => self.thread_on(),
             Phase::Return if self.desk.own_path => {
                 // with the joystick let go, or a push of it that asked for no return, it brakes
                 let repeats = self.desk.power.repeats > 0;
@@ -141,7 +146,7 @@ impl Foreground<'_> {
         self.drop_path();
         let position = self.channel.position();
         let at = part(position, axis);
-        let room = self.desk.room(axis, part(self.desk.own_place(position, self.channel.offset()), axis));
+        let room = self.desk.room(axis, part(self.place(), axis));
         // without limits as far as a path may lead
         let far = if plus { room.1.min(FAR) } else { room.0.max(-FAR) };
         let end = self.desk.power.end(axis, plus, at, at.saturating_add(far));
@@ -240,4 +245,4 @@ impl Foreground<'_> {
 }
 
 /// Pulses that a feed without limits leads, at most.
-const FAR: i32 = 1 << 28;
+pub(super) const FAR: i32 = 1 << 28;

@@ -52,6 +52,12 @@ pub enum Refusal {
     JoystickLatched,
     /// The handwheels are switched off by a parameter.
     WheelsOff,
+    /// The lever has no lead: the feed is not one a turn.
+    NoLead,
+    /// The spindle's index was not seen.
+    NoIndex,
+    /// No pick-up was begun, or nothing was captured.
+    NothingToPickUp,
 }
 
 impl Refusal {
@@ -83,6 +89,9 @@ impl Refusal {
             Self::WayBackEnds => "way-back-ends",
             Self::JoystickLatched => "joystick-latched",
             Self::WheelsOff => "wheels-off",
+            Self::NoLead => "no-lead",
+            Self::NoIndex => "no-index",
+            Self::NothingToPickUp => "nothing-to-pick-up",
         }
     }
 }
@@ -114,6 +123,11 @@ impl fmt::Display for Refusal {
             Self::WayBackEnds => f.write_str("the way back ends here: what comes before can't be undone"),
             Self::JoystickLatched => f.write_str("the joystick is latched: move it to the middle first"),
             Self::WheelsOff => f.write_str("the handwheels are switched off: set handwheels=true"),
+            Self::NoLead => f.write_str("the lever needs a lead: set a feed rate in mm/rev"),
+            Self::NoIndex => f.write_str("the spindle's index was not seen: turn it by a whole turn"),
+            Self::NothingToPickUp => {
+                f.write_str("no thread is being picked up: begin, lead the tool into the groove, capture")
+            }
         }
     }
 }

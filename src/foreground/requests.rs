@@ -109,6 +109,8 @@ impl Foreground<'_> {
                 }
             }
             Command::Spindle(speed) => self.desk.spindle = speed,
+            Command::Lever(engage) => self.set_lever(engage)?,
+            Command::PickUp(step) => self.pick_up(step)?,
             Command::Resume => {
                 self.desk.interrupted = 0;
                 self.desk.starting = true;
@@ -221,6 +223,9 @@ impl Foreground<'_> {
         let by = pulse.nearest(at).wrapping_sub(shown);
         *place = place.wrapping_add(by);
         if self.channel.set_position(position) {
+            if matches!(axis, Axis::Z) {
+                self.shift_groove(by);
+            }
             let datum = part_mut(&mut self.desk.datum, axis);
             *datum = datum.wrapping_sub(by);
             let stop = self.desk.power.stops.of_mut(axis);

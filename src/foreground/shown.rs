@@ -4,6 +4,7 @@ use super::alarm::Alarm;
 use super::contour::length;
 use super::inputs::PerAxis;
 use super::mode::Mode;
+pub use super::threads::PickUp;
 use super::{Foreground, Outputs};
 use interp_core::block::Speed;
 use interp_core::channel::State;
@@ -50,6 +51,10 @@ pub struct Shown {
     pub trouble: Option<Trouble>,
     /// Line in which a program was interrupted, 0 for none.
     pub interrupted: u32,
+    /// The threading lever is engaged.
+    pub lever: bool,
+    /// Picking up a thread.
+    pub pick_up: PickUp,
 }
 
 impl Foreground<'_> {
@@ -75,6 +80,8 @@ impl Foreground<'_> {
             following: desk.following,
             trouble: desk.trouble,
             interrupted: desk.interrupted,
+            lever: self.engaged(),
+            pick_up: desk.pick_up,
         }
     }
 

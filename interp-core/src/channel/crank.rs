@@ -1,5 +1,6 @@
 //! Drives other than time: which one turns the crank, their inputs, and what they keep from tick to tick.
 
+use super::groove::Groove;
 use super::lookahead::{Overrides, pace};
 use super::thread_hold::ThreadHold;
 use super::{Active, Channel, Current, State};
@@ -47,6 +48,8 @@ pub(super) struct Crank {
     feed: Option<Proportion>,
     /// Hold and faults in a thread.
     pub(super) thread: ThreadHold,
+    /// The groove that threads meet.
+    pub(super) groove: Option<Groove>,
 }
 
 impl Crank {
@@ -66,6 +69,7 @@ impl Crank {
             follower: Follower::new(),
             feed: None,
             thread: ThreadHold::new(),
+            groove: None,
         }
     }
 

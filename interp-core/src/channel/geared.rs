@@ -187,8 +187,14 @@ impl<const N: usize> Channel<N> {
                 if foretold.rate.unsigned_abs() < TURNING {
                     return;
                 }
-                let mut gearing = Gearing::new(lead, spindle.turn(), foretold.angle, foretold.rate < 0);
-                gearing.set_phase(zero, start);
+                let reverse = foretold.rate < 0;
+                let mut gearing = Gearing::new(lead, spindle.turn(), foretold.angle, reverse);
+                let behind = self.crank.groove.map_or(0, |groove| {
+                    let behind = groove.at(self.position.z, self.crank.thread.pulse_z(), &active.motion, lead);
+                    // angles count in the spindle's sense
+                    if reverse { behind.wrapping_sub(groove.angle).wrapping_sub(groove.angle) } else { behind }
+                });
+                gearing.set_phase(zero, start.wrapping_add(behind));
                 gearing
             }
             (None, Drive::Spindle(lead)) => Gearing::new(lead, spindle.turn(), foretold.angle, false),

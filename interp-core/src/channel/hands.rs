@@ -155,21 +155,24 @@ impl<const N: usize> Channel<N> {
         self.speed > 0 || matches!(self.state, State::Running | State::Resetting)
     }
 
-    /// The tick of the hands: pulses of X and Z to be added to the program's.
+    /// The tick of the hands: pulses of X and Z to be added to the program's, which pulls X out of a thread by `retract`.
     #[inline]
-    pub(super) fn by_hand(&mut self) -> (i32, i32) {
+    pub(super) fn by_hand(&mut self, retract: i32) -> (i32, i32) {
         let (x, z) = core::mem::take(&mut self.hands.correction);
         if self.hands.at_rest() {
             (self.hands.x.at, self.hands.z.at) = (self.position.x, self.position.z);
             return (x, z);
         }
-        let by_hand = self.move_by_hand();
+        let by_hand = self.move_by_hand(retract);
         (by_hand.0.wrapping_add(x), by_hand.1.wrapping_add(z))
     }
 
     #[cold]
-    fn move_by_hand(&mut self) -> (i32, i32) {
-        let moves = self.may_move();
+    fn move_by_hand(&mut self, retract: i32) -> (i32, i32) {
+        let moves = self.may_move() || retract != 0;
+        // the retract is the program's, too
+        let away = self.position.x.wrapping_sub(self.hands.x.at).saturating_abs();
+        self.hands.x.at = self.position.x.wrapping_sub(away).wrapping_sub(retract.saturating_abs());
         let (x, z) = self.hands.tick(moves, self.position);
         let into = |folds: bool, position: &mut i32, offset: &mut i32, pulses: i32| {
             let place = if folds { position } else { offset };

@@ -12,6 +12,7 @@ mod crank;
 mod cruise;
 pub mod follower;
 mod geared;
+pub mod groove;
 pub mod hand;
 mod hands;
 mod lead;
@@ -434,8 +435,9 @@ impl<const N: usize> Channel<N> {
         let in_cycle = matches!(self.state, State::Running | State::Holding | State::Stopped | State::Resetting);
         self.take(source);
         let mut output = None;
-        let (x, z) = self.by_hand();
-        let x = x.wrapping_add(self.crank.thread.pulses());
+        let retract = self.crank.thread.pulses();
+        let (x, z) = self.by_hand(retract);
+        let x = x.wrapping_add(retract);
         if in_cycle || !self.hands.at_rest() || x != 0 || z != 0 {
             self.superpose(x, z);
             if in_cycle {

@@ -122,6 +122,11 @@ impl ThreadHold {
         }
     }
 
+    /// How far a pulse moves Z.
+    pub(super) const fn pulse_z(&self) -> PulseSize {
+        self.pulses.1
+    }
+
     /// The thread is over.
     pub(super) const fn end(&mut self) {
         self.stage = ThreadStage::None;

@@ -58,6 +58,12 @@ impl Lead {
         Self { nm: to_u32(fine >> 30), part: (fine & u64::from(FINE).wrapping_sub(1)) as u32, per: FINE }
     }
 
+    /// Exactly, as a ratio of nanometres a turn.
+    pub const fn ratio(self) -> (u64, u32) {
+        let per = if self.per == 0 { 1 } else { self.per };
+        ((self.nm as u64).wrapping_mul(per as u64).wrapping_add(self.part as u64), per)
+    }
+
     /// Nanometres a turn, rounded down.
     pub const fn nm(self) -> u32 {
         self.nm

@@ -108,6 +108,11 @@ impl Spindle {
         self.turn
     }
 
+    /// The angle at the last reading, [`ANGLE_BITS`].
+    pub const fn angle(&self) -> i64 {
+        self.angle
+    }
+
     /// Takes the reading of a tick.
     pub fn observe(&mut self, reading: Reading) {
         if !self.known {

@@ -6,6 +6,7 @@ mod drives;
 mod intervention;
 mod power;
 mod state;
+mod threads;
 mod wheels;
 
 extern crate std;
@@ -25,6 +26,9 @@ use feature_editor::codes::Format;
 use interp_core::train::Event;
 use interp_core::units::Point;
 
+/// Counts a turn of the spindle's encoder.
+const COUNTS: f64 = 4096.0;
+
 /// A lathe whose pulses are counted.
 struct Bench {
     foreground: Foreground<'static>,
@@ -38,6 +42,9 @@ struct Bench {
     at: Lattice,
     /// Where the axes were at each tick's end.
     track: Vec<Lattice>,
+    /// The spindle: counts, and counts a tick.
+    spindle: f64,
+    rate: f64,
 }
 
 impl Bench {
@@ -57,10 +64,11 @@ impl Bench {
         let ((blocks, block_out), (_, command_out)) = (blocks.split(), commands.split());
         let mut foreground = Foreground::new(&machine, Lattice::default(), block_out, command_out);
         foreground.request(Command::Settle(parameters.operation(&machine))).unwrap();
+        foreground.set_encoder(Some(4096));
         let (inputs, levels) = (Inputs::NONE, interp_core::train::Levels::LOW);
         let program = VecDeque::new();
         let at = Lattice::default();
-        Self { foreground, blocks, program, parameters, inputs, open: false, levels, at, track: Vec::new() }
+        Self { foreground, blocks, program, parameters, inputs, open: false, levels, at, track: Vec::new(), spindle: 0.0, rate: 0.0 }
     }
 
     fn mode(mode: Mode) -> Self {
@@ -97,6 +105,12 @@ impl Bench {
             assert!(self.blocks.enqueue(block).is_ok());
         }
         self.foreground.watch(Faults::default(), self.open);
+        let before = self.spindle;
+        self.spindle += self.rate;
+        let passed = (before / COUNTS).floor() != (self.spindle / COUNTS).floor();
+        let index = passed.then(|| ((before.max(self.spindle) / COUNTS).floor() * COUNTS) as i64 as u16);
+        let counts = self.spindle.floor() as i64 as u16;
+        self.inputs.spindle = Some(interp_core::drive::spindle::Reading { counts, index });
         self.foreground.read(&self.inputs);
         self.inputs.wheels = PerAxis::default();
         self.inputs.contour = 0;

@@ -222,10 +222,8 @@ fn the_book_has_the_table() {
         let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
         writeln!(table, "| {head} | {} |\n|---|{}", names.join(" | "), "---|".repeat(names.len())).unwrap();
         for (name, command) in &rows {
-            let cells: Vec<&str> = columns
-                .iter()
-                .map(|(_, now)| mode::refusal(command, now).map_or("yes", Refusal::name))
-                .collect();
+            let cells: Vec<&str> =
+                columns.iter().map(|(_, now)| mode::refusal(command, now).map_or("yes", Refusal::name)).collect();
             writeln!(table, "| {name} | {} |", cells.join(" | ")).unwrap();
         }
         table
