@@ -1,5 +1,11 @@
 //! The operator's machine on a bench: requests and readings in, pulses out.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::cast_possible_truncation, reason = "tests")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "tests"
+)]
 
 mod coordinates;
 mod drives;
@@ -68,7 +74,19 @@ impl Bench {
         let (inputs, levels) = (Inputs::NONE, interp_core::train::Levels::LOW);
         let program = VecDeque::new();
         let at = Lattice::default();
-        Self { foreground, blocks, program, parameters, inputs, open: false, levels, at, track: Vec::new(), spindle: 0.0, rate: 0.0 }
+        Self {
+            foreground,
+            blocks,
+            program,
+            parameters,
+            inputs,
+            open: false,
+            levels,
+            at,
+            track: Vec::new(),
+            spindle: 0.0,
+            rate: 0.0,
+        }
     }
 
     fn mode(mode: Mode) -> Self {
@@ -107,8 +125,9 @@ impl Bench {
         self.foreground.watch(Faults::default(), self.open);
         let before = self.spindle;
         self.spindle += self.rate;
-        let passed = (before / COUNTS).floor() != (self.spindle / COUNTS).floor();
-        let index = passed.then(|| ((before.max(self.spindle) / COUNTS).floor() * COUNTS) as i64 as u16);
+        let turn = |counts: f64| (counts / COUNTS).floor() as i64;
+        let (before, now) = (turn(before), turn(self.spindle));
+        let index = (before != now).then(|| (before.max(now) * 4096) as u16);
         let counts = self.spindle.floor() as i64 as u16;
         self.inputs.spindle = Some(interp_core::drive::spindle::Reading { counts, index });
         self.foreground.read(&self.inputs);

@@ -414,8 +414,8 @@ impl Control {
                 self.unlocking = true;
                 self.unlock(foreground);
             }
-            // the lead builds these in the foreground
-            What::Lever(_) | What::PickUp(_) => self.refuse(line, "not-built", "threads by hand are not built yet"),
+            What::Lever(engage) => self.command(line, Command::Lever(*engage), foreground),
+            What::PickUp(step) => self.command(line, Command::PickUp(*step), foreground),
             What::PowerFail => return Ok(Next::Fail),
             What::PowerOn => self.refuse(line, "power-is-on", "the power is on already"),
             What::Expect(expect) => {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use handcnc::foreground::Command;
+use handcnc::foreground::command::PickUpStep;
 use handcnc::foreground::inputs::Joystick;
 use interp_core::units::Axis;
 
@@ -46,17 +47,6 @@ pub enum Source {
     Spindle,
 }
 
-/// Steps of picking up an existing thread.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum PickUp {
-    /// Begin.
-    Begin,
-    /// The tool stands in the groove.
-    Capture,
-    /// Cut on.
-    Go,
-}
-
 /// A limit switch, as a script has it.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Switch {
@@ -92,7 +82,7 @@ pub enum What {
     /// The threading lever.
     Lever(bool),
     /// Picking up a thread.
-    PickUp(PickUp),
+    PickUp(PickUpStep),
     /// The emergency stop is pressed.
     EmergencyStop,
     /// It is pulled out, and the machine unlocked.

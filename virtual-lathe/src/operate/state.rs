@@ -59,6 +59,8 @@ pub(super) fn json(view: &View<'_>) -> Value {
         "refusals": names,
         "block": shown.line,
         "interrupted": shown.interrupted,
+        "lever": shown.lever,
+        "pick_up": shown.pick_up.name(),
         "verified": {"x": shown.verified.x, "z": shown.verified.z},
         "spindle": {
             "rpm": rounded(spindle.rpm(bench.machine())),

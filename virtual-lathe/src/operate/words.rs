@@ -1,13 +1,14 @@
 //! The words of the language: what may stand behind the time, and what each takes.
 
 use handcnc::foreground::Command;
+use handcnc::foreground::command::PickUpStep;
 use handcnc::foreground::command::Stop;
 use handcnc::foreground::contour::Contour;
 use handcnc::foreground::inputs::Joystick;
 use interp_core::drive::wheel::Click;
 use interp_core::units::{Axis, Length, Point, Sense};
 
-use super::event::{PickUp, Source, Switch, What, Wheel};
+use super::event::{Source, Switch, What, Wheel};
 use super::expect::{Expect, Relation};
 use super::number::scaled;
 use super::script::{Words, Wrong, feed_rate, mode, plain};
@@ -82,7 +83,7 @@ pub(super) fn what(words: &mut Words<'_>) -> Result<What, Wrong> {
         }
         "threading-lever" => Ok(What::Lever(words.one_of("position of the lever", &[("in", true), ("out", false)])?)),
         "pick-up" => {
-            let steps = [("begin", PickUp::Begin), ("capture", PickUp::Capture), ("go", PickUp::Go)];
+            let steps = [("begin", PickUpStep::Begin), ("capture", PickUpStep::Capture), ("go", PickUpStep::Go)];
             Ok(What::PickUp(words.one_of("step of picking up a thread", &steps)?))
         }
         "limit" => limit(words),
