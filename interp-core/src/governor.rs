@@ -79,7 +79,7 @@ impl Bend {
 
     /// `a R sin(2 s / R + asin(w_end / a R))`, at most `a R`.
     fn reachable(&self, distance: u64, exit: Heading) -> u64 {
-        self.cut_off(distance, exit).min(UNLIMITED >> self.cut).wrapping_shl(self.cut)
+        self.cut_off(distance, exit).min(UNLIMITED.wrapping_shr(self.cut)).wrapping_shl(self.cut)
     }
 
     /// That, less the bits that are cut off.
