@@ -35,6 +35,7 @@ mod app {
     use handcnc::background::status::Status;
     use handcnc::foreground::alarm::{Alarm, Faults};
     use handcnc::foreground::heartbeat::Heartbeat;
+    use handcnc::foreground::inputs::Inputs;
     use handcnc::foreground::train_queue::{Player, TrainQueue, Writer};
     use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
     use handcnc::queue::{Consumer, Producer, Queue};
@@ -118,6 +119,7 @@ mod app {
         let new = || Foreground::new(&machine, position, blocks_out, commands_out);
         let foreground = make(cx.local.foreground_place, new);
         foreground.obey(Command::FeedOverride(parameters.feed_override()));
+        foreground.obey(Command::Settle(parameters.operation(&machine)));
         defmt::println!("{=str}, restarted by the watchdog: {=bool}", env!("CARGO_PKG_VERSION"), have.restarted);
         if have.restarted {
             foreground.raise(Alarm::Watchdog);
@@ -202,7 +204,9 @@ mod app {
         width.set(foreground.pulse_width()); // of the tick that is being played
         let faults = Faults { underruns: train.underruns(), overruns: train.overruns(), late: LATE.load(Relaxed) };
         foreground.watch(faults, taken(&STRUCK) || contact.is_open());
-        bench.due(foreground.state(), &mut |command| foreground.obey(command));
+        let mut inputs = Inputs::NONE;
+        bench.due(foreground.state(), &mut |act| foreground.act(act, &mut inputs));
+        foreground.read(&inputs);
         let report = foreground.tick(train);
         train.publish();
         if !STRUCK.load(Relaxed) {

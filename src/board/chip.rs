@@ -1,7 +1,7 @@
 //! What real chips share: all but the pins and the clock, which a board's own module gives.
 
-use handcnc::foreground::Command;
 use handcnc::foreground::alarm::Faults;
+use handcnc::foreground::rehearsal::Act;
 use interp_core::channel::{Report, State};
 use interp_core::train::Levels;
 use stm32f4xx_hal::gpio::alt::SerialAsync as CommonPins;
@@ -175,9 +175,9 @@ pub(crate) fn safe() -> ! {
 pub(crate) struct Bench;
 
 impl Bench {
-    /// Commands that are due: none.
+    /// What the operator does now: nothing that the board reads yet.
     #[inline]
-    pub(crate) fn due(&mut self, _: State, _: &mut impl FnMut(Command)) {}
+    pub(crate) fn due(&mut self, _: State, _: &mut impl FnMut(Act)) {}
 
     /// Sees a tick.
     #[inline]

@@ -15,10 +15,9 @@
 //! `TICK:hold`, `TICK:start`, `TICK:reset`, `TICK:override=PERCENT` for a command at a tick of the cycle.
 
 use handcnc::background::parameters::Parameters;
-use handcnc::foreground::Command;
 use handcnc::foreground::alarm::Faults;
 use handcnc::foreground::outputs::Outputs;
-use handcnc::foreground::rehearsal::Rehearsal;
+use handcnc::foreground::rehearsal::{Act, Rehearsal};
 use handcnc::foreground::train_queue::Play;
 use interp_core::channel::{Report, State};
 use interp_core::config::TICK_CLOCKS;
@@ -80,9 +79,11 @@ impl StepTimer {
         Self { timer: unsafe { Registers::new(TIM5::ptr()) } }
     }
 
-    /// Starts the clock with an idle tick.
+    /// Starts the clock with an idle tick. The emulated counter has run since its limit was set, and one that is past it comes
+    /// round after 4 s only.
     pub(crate) fn start(&mut self) {
         self.timer.cr1().write(|w| w.cen().set_bit());
+        self.timer.cnt().write(|w| w.cnt().set(0));
     }
 
     /// Takes the interrupt.
@@ -181,9 +182,9 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    /// Commands that are due.
-    pub(crate) fn due(&mut self, state: State, obey: &mut impl FnMut(Command)) {
-        self.rehearsal.due(state, obey);
+    /// What the operator does now.
+    pub(crate) fn due(&mut self, state: State, act: &mut impl FnMut(Act)) {
+        self.rehearsal.due(state, act);
     }
 
     /// Marks a change of state, and faults, in the log.
@@ -239,18 +240,8 @@ fn set(word: &str, parameters: &mut Parameters, rehearsal: &mut Rehearsal) -> bo
     if let Some(path) = word.strip_prefix("log=") {
         return host_log::open(path);
     }
-    if let Some((tick, what)) = word.split_once(':') {
-        let command = match what.split_once('=') {
-            None if what == "hold" => Command::Hold,
-            None if what == "start" => Command::Start,
-            None if what == "reset" => Command::Reset,
-            Some(("override", percent)) => match percent.parse() {
-                Ok(percent) => Command::FeedOverride(percent),
-                Err(_) => return false,
-            },
-            _ => return false,
-        };
-        return tick.parse().is_ok_and(|tick| rehearsal.set(tick, command));
+    if word.contains(':') {
+        return rehearsal.set_word(word);
     }
     word.split_once('=').is_some_and(|(name, value)| parameters.set(name, value).is_ok())
 }

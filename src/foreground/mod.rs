@@ -40,6 +40,7 @@ use desk::Desk;
 use inputs::{Inputs, PerAxis};
 use outputs::Outputs;
 use refusal::Refusal;
+use rehearsal::Act;
 
 /// Blocks that a lathe looks ahead. The same on every board and on the desktop, since the pulses depend on it.
 pub const LOOKAHEAD: usize = 64;
@@ -147,6 +148,14 @@ impl<'q> Foreground<'q> {
     fn forget(&mut self) {
         while self.blocks.dequeue().is_some() {}
         self.desk.own.clear();
+    }
+
+    /// Does what an operator does: a request at once, a turn of the wheels with the readings of the tick.
+    pub fn act(&mut self, act: Act, inputs: &mut Inputs) {
+        match act {
+            Act::Command(command) => self.obey(command),
+            Act::Wheels(..) => act.turn(inputs),
+        }
     }
 
     /// Obeys a command at once, or notes why it is [refused](Self::refused); the next tick is the first that shows it.

@@ -4,6 +4,7 @@ use anyhow::{Result, bail};
 use feature_editor::codes::{Detector, Format, Item};
 use handcnc::background::compile::{Compiler, Finding};
 use handcnc::background::parameters::Parameters;
+use handcnc::foreground::inputs::Inputs;
 use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
 use handcnc::queue::Queue;
 use interp_core::block::{Block, Work};
@@ -65,6 +66,7 @@ pub(crate) fn run(trial: &Trial, most: usize, take: &mut Take<'_>) -> Result<()>
     let mut foreground = Foreground::new(machine, position, block_out, command_out);
     foreground.obey(Command::FeedOverride(parameters.feed_override()));
     foreground.obey(Command::OptionalStop(parameters.optional_stop()));
+    foreground.obey(Command::Settle(parameters.operation(machine)));
     foreground.obey(Command::Start);
     let mut lines = program.lines.iter();
     let mut ready: VecDeque<Block> = VecDeque::new();
@@ -91,7 +93,9 @@ pub(crate) fn run(trial: &Trial, most: usize, take: &mut Take<'_>) -> Result<()>
             left -= 1;
         }
         let mut events = Vec::new();
-        rehearsal.due(foreground.state(), &mut |command| foreground.obey(command));
+        let mut inputs = Inputs::NONE;
+        rehearsal.due(foreground.state(), &mut |act| foreground.act(act, &mut inputs));
+        foreground.read(&inputs);
         let report = foreground.tick(&mut |event| events.push(event));
         if report.in_cycle && !take(&events) {
             return Ok(());

@@ -33,8 +33,8 @@ pub(crate) struct Arguments {
     /// Sets a parameter on both sides.
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<String>,
-    /// A command right before this tick of the cycle: hold, start, reset or override=PERCENT.
-    #[arg(long, value_name = "TICK:COMMAND")]
+    /// What an operator does right before this tick of the cycle: hold, start, reset, override=PERCENT, wheel-x=COUNTS*TICKS ..
+    #[arg(long, value_name = "TICK:WHAT")]
     at: Vec<String>,
     /// How many run at once; by default as many as the computer has processors.
     #[arg(long)]

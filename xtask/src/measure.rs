@@ -99,7 +99,31 @@ const SINE: [&str; 7] = [
     "accel=sine",
 ];
 
-const CASES: [Case; 10] = [
+/// Everything at once: both axes at 100 000 pulses a second, compensated, under the sine law, both handwheels turned.
+const EVERYTHING: [&str; 20] = [
+    "x.pulse_nm=1000",
+    "z.pulse_nm=1000",
+    "x.max_feed=9000",
+    "z.max_feed=9000",
+    "x.max_accel=5000",
+    "z.max_accel=5000",
+    "x.pulse_width_ns=2500",
+    "z.pulse_width_ns=2500",
+    "x.min_space_ns=2000",
+    "z.min_space_ns=2000",
+    "x.backlash_um=20",
+    "z.backlash_um=30",
+    "x.thermal_um_per_m_k=11.5",
+    "z.thermal_um_per_m_k=11.5",
+    "temperature_c=35",
+    "accel=sine",
+    "handwheels=true",
+    "60:wheel-x=3*2000",
+    "60:wheel-z=-2*2000",
+    "200:override=97",
+];
+
+const CASES: [Case; 12] = [
     Case("line 4:3, X at 80 kHz", "G21 G90\nG4 P0.05\nG1 X40 Z30 F6000\nM2\n", &PULSES),
     Case("arc, R 10 mm, 25 kHz", "G21 G90\nG4 P0.05\nG3 X-10 Z-10 I-10 K0 F1500\nM2\n", &PULSES),
     // its centre lies between the lattice lines, so the walk needs 64 bits
@@ -114,6 +138,8 @@ const CASES: [Case; 10] = [
         &COMPENSATED,
     ),
     Case("line 4:3, sine law", "G21 G90\nG4 P0.05\nG1 X40 Z30 F6000\nM2\n", &SINE),
+    Case("line 1:1, everything, 2 x 100 kHz", "G21 G90\nG4 P0.05\nG1 X60 Z60 F8485\nM2\n", &EVERYTHING),
+    Case("arc, R 50 mm, everything, 141 kHz", "G21 G90\nG4 P0.05\nG3 X-50 Z-50 I-50 K0 F8485\nM2\n", &EVERYTHING),
     Case("arc, R 10 mm, sine law", "G21 G90\nG4 P0.05\nG3 X-10 Z-10 I-10 K0 F1500\nM2\n", &SINE),
 ];
 
@@ -148,7 +174,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut cases = Map::new();
     for (name, counts) in &counted {
         // the two cases of one curve with the fewest and the most steps a tick, under the linear law and uncompensated
-        let plain = |name: &str| !name.contains("law") && !name.contains("compensated");
+        let plain = |name: &str| !["law", "compensated", "everything"].iter().any(|other| name.contains(other));
         let kin = counted.iter().filter(|(other, _)| plain(other) && other.split(' ').next() == name.split(' ').next());
         let per_step = slope(kin.map(|(_, counts)| counts));
         cases.insert((*name).into(), figures(counts, per_step));

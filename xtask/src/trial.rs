@@ -1,16 +1,15 @@
 //! A program for the emulated run, with the parameters and the commands that belong to it.
 //!
 //! A line of the program that begins with `;:` is a comment to every reader but this one: its words are those of the
-//! qemu image's command line, `NAME=VALUE` for a parameter and `TICK:COMMAND` for a command right before that tick of
-//! the cycle (`hold`, `start`, `reset`, `override=PERCENT`).
+//! qemu image's command line, `NAME=VALUE` for a parameter and `TICK:WHAT` for what an operator does right before that tick of
+//! the cycle (see `handcnc::foreground::rehearsal`).
 
 use std::fs;
 use std::path::Path;
 
 use anyhow::{Context as _, Result, bail};
 use handcnc::background::parameters::Parameters;
-use handcnc::foreground::Command;
-use handcnc::foreground::rehearsal::Rehearsal;
+use handcnc::foreground::rehearsal::{APPOINTMENTS, Rehearsal};
 use interp_core::config::Machine;
 
 use crate::desktop::Program;
@@ -56,16 +55,9 @@ fn obey(word: &str, parameters: &mut Parameters, rehearsal: &mut Rehearsal) -> R
     if word.contains(' ') {
         bail!("a word has no blanks");
     }
-    if let Some((tick, what)) = word.split_once(':') {
-        let command = match what.split_once('=') {
-            None if what == "hold" => Command::Hold,
-            None if what == "start" => Command::Start,
-            None if what == "reset" => Command::Reset,
-            Some(("override", percent)) => Command::FeedOverride(percent.parse().context("a percentage is wanted")?),
-            _ => bail!("TICK:hold, TICK:start, TICK:reset or TICK:override=PERCENT is wanted"),
-        };
-        if !rehearsal.set(tick.parse().context("a tick's number is wanted")?, command) {
-            bail!("there is no place for more commands");
+    if word.contains(':') {
+        if !rehearsal.set_word(word) {
+            bail!("TICK:WHAT is wanted, as docs/src/firmware.md lists it, and at most {APPOINTMENTS} of them");
         }
         return Ok(());
     }

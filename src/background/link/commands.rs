@@ -147,6 +147,10 @@ impl Link {
         if machine != self.machine {
             self.outbox.machine = Some(machine);
         }
+        let settings = parameters.operation(&machine);
+        if settings != self.parameters.operation(&self.machine) {
+            self.outbox.settings = Some(settings);
+        }
         if name == "feed_override" {
             self.ask_percent(parameters.feed_override());
         }

@@ -3,6 +3,7 @@
 use interp_core::config::Machine;
 
 use crate::foreground::Command;
+use crate::foreground::settings::Settings;
 use crate::queue::Producer;
 
 /// Whether the foreground has obeyed what was asked of it.
@@ -31,6 +32,7 @@ pub(super) enum Flow {
 pub(super) struct Outbox {
     pub(super) reset: bool,
     pub(super) machine: Option<Machine>,
+    pub(super) settings: Option<Settings>,
     /// Leave the alarm.
     pub(super) unlock: bool,
     /// The position is right: who unlocks says so.
@@ -53,6 +55,7 @@ impl Outbox {
             match command {
                 Command::Reset => self.reset = false,
                 Command::Configure(_) => self.machine = None,
+                Command::Settle(_) => self.settings = None,
                 Command::FeedOverride(_) => self.percent = None,
                 Command::Unlock => (self.unlock, self.confirm) = (false, true),
                 Command::ConfirmPosition => self.confirm = false,
@@ -72,6 +75,9 @@ impl Outbox {
         }
         if let Some(machine) = self.machine {
             return Some(Command::Configure(machine));
+        }
+        if let Some(settings) = self.settings {
+            return Some(Command::Settle(settings));
         }
         if self.unlock {
             return Some(Command::Unlock);
