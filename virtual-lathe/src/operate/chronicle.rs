@@ -3,7 +3,6 @@
 use handcnc::foreground::mode::Mode;
 use handcnc::foreground::shown::Shown;
 use interp_core::units::Lattice;
-use machine::Axes;
 
 use super::event::{What, Wheel};
 
@@ -19,8 +18,10 @@ pub struct Moment {
     pub mode: Mode,
     /// Where the program is, pulses.
     pub programmed: Lattice,
-    /// Where the slides are, mm: Z and X.
-    pub slides: [f64; 2],
+    /// Where the axes are, pulses.
+    pub position: Lattice,
+    /// The power is on.
+    pub power: bool,
 }
 
 /// Something worth a mark.
@@ -46,7 +47,7 @@ pub struct Chronicle {
 
 impl Chronicle {
     /// A tick has been played.
-    pub(super) fn tick(&mut self, tick: u64, shown: &Shown, slides: Axes<f64>) {
+    pub(super) fn tick(&mut self, tick: u64, shown: &Shown, power: bool) {
         if shown.alarm.is_some() && !self.alarmed {
             let name = shown.alarm.map(|alarm| super::state::kebab(&format!("{alarm:?}"))).unwrap_or_default();
             self.marks.push(Mark::Alarm(tick, name));
@@ -60,8 +61,8 @@ impl Chronicle {
             let every = self.every;
             self.moments.retain(|moment| moment.tick.is_multiple_of(1 << every));
         }
-        let slides = [slides.z * 1e-6, slides.x * 1e-6];
-        self.moments.push(Moment { tick, mode: shown.mode, programmed: shown.programmed, slides });
+        let Shown { mode, programmed, position, .. } = *shown;
+        self.moments.push(Moment { tick, mode, programmed, position, power });
     }
 
     /// Hands have done something.

@@ -56,6 +56,8 @@ pub struct Done {
     pub broken: Broken,
     /// What is drawn.
     pub chronicle: Chronicle,
+    /// The machine at the end.
+    pub machine: Machine,
     /// The trace, written but not in its place.
     pub trace: Option<Pending>,
     /// It was ended, as something still moved or ran a minute after the last event.
@@ -152,8 +154,9 @@ impl Control {
             self.watch.cut();
         }
         let broken = self.watch.finish();
+        let machine = self.background.machine;
         let Self { failed, chronicle, trace, endless, .. } = self;
-        Ok(Done { state, failed, broken, chronicle, trace, endless })
+        Ok(Done { state, failed, broken, chronicle, machine, trace, endless })
     }
 
     /// A stretch of time with power.
@@ -268,7 +271,7 @@ impl Control {
             self.watch.joint();
         }
         let moved = self.watch.pulses() != before;
-        self.chronicle.tick(self.tick, &self.shown, self.bench.slides());
+        self.chronicle.tick(self.tick, &self.shown, self.power);
         self.tick += 1;
         if moved || self.is_busy() {
             self.busy = self.tick;
@@ -542,16 +545,23 @@ impl Control {
 
     fn refuse(&mut self, line: u32, name: &str, text: &str) {
         self.chronicle.refused(self.tick, name);
-        self.refused.push(Refused { tick: self.tick, line, name: name.into(), text: text.into(), times: 1 });
+        self.refused.push(Refused {
+            tick: self.tick,
+            last: self.tick,
+            line,
+            name: name.into(),
+            text: text.into(),
+            times: 1,
+        });
     }
 
     /// The foreground refuses something by itself: often in every tick that it lasts.
     fn refuse_again(&mut self, refusal: Refusal, times: u32) {
         let (name, tick) = (refusal.name(), self.tick);
-        let same = |refused: &&mut Refused| refused.line == 0 && refused.name == name && tick - refused.tick < AGAIN;
+        let same = |refused: &&mut Refused| refused.line == 0 && refused.name == name && tick - refused.last < AGAIN;
         match self.refused.iter_mut().rev().find(same) {
             Some(refused) => {
-                refused.tick = tick;
+                refused.last = tick;
                 refused.times = refused.times.saturating_add(times);
             }
             None => self.refuse(0, name, &refusal.to_string()),
@@ -564,7 +574,8 @@ impl Control {
         }
     }
 
-    fn state(&self) -> Value {
+    /// The state now.
+    pub(super) fn state(&self) -> Value {
         let at = self.watch.position();
         state::json(&View {
             shown: &self.shown,

@@ -116,6 +116,23 @@ pub fn at<'s>(state: &'s Value, key: &str) -> Option<&'s Value> {
     })
 }
 
+/// Whether a state like this one can have such a key: an item of a list may come later.
+#[must_use]
+pub fn is_known(state: &Value, key: &str) -> bool {
+    let mut value = state;
+    for part in key.split('.') {
+        match value {
+            Value::Object(fields) => match fields.get(part) {
+                Some(next) => value = next,
+                None => return false,
+            },
+            Value::Array(_) => return part.parse::<usize>().is_ok(),
+            _ => return false,
+        }
+    }
+    true
+}
+
 /// Whether a value is what was written.
 #[expect(clippy::float_cmp, reason = "a script that wants a tolerance writes ~")]
 fn same(found: &Value, wanted: &str) -> bool {

@@ -15,6 +15,7 @@ pub mod expect;
 mod noise;
 pub mod number;
 pub mod script;
+mod sheet;
 mod spindle;
 pub mod state;
 mod wheels;
@@ -36,6 +37,7 @@ use event::{Event, What};
 use script::{Script, ScriptError};
 
 use crate::output::{Pending, Places};
+use crate::picture;
 use crate::settings::{Refusal, Settings};
 use crate::turn;
 
@@ -125,19 +127,20 @@ pub fn perform(job: &Job, trace: Option<&Path>) -> Result<Done, Unrun> {
     let last = events.last().map_or(0, |event| event.tick);
     let bar = turn::progress(last);
     bar.set_message("operating");
-    let done = run(settings, machine, events, job.format, trace, bar.clone());
+    let done = control(settings, machine, events, job.format, trace, bar.clone())?.run();
     bar.finish_and_clear();
-    done
+    Ok(done?)
 }
 
-fn run(
+/// The machine with its control, before the first tick.
+fn control(
     settings: Settings,
     machine: Machine,
     events: Vec<Event>,
     format: Option<Format>,
     mut trace: Option<Pending>,
     bar: ProgressBar,
-) -> Result<Done, Unrun> {
+) -> Result<Control, Unrun> {
     let start = settings.parameters.start();
     if let Some(trace) = &mut trace {
         let (x, z) = (machine.x.pulse.nearest(start.x), machine.z.pulse.nearest(start.z));
@@ -147,7 +150,7 @@ fn run(
     let model = settings.model(&machine).map_err(wrong)?;
     let bench = Bench::new(&settings, model).map_err(wrong)?;
     let background = Background::new(settings, machine, format);
-    Ok(Control::new(events, bench, background, trace, bar)?.run()?)
+    Ok(Control::new(events, bench, background, trace, bar)?)
 }
 
 /// Parameters of the call, then those that the script sets at second 0, which describe the machine from its start; those
@@ -176,11 +179,12 @@ fn prepare(job: &Job, mut events: Vec<Event>) -> Result<(Settings, Machine, Vec<
             Err((cause, remedy)) => errors.push(error_of(event, cause, remedy)),
         }
     }
+    settings = first;
+    errors.extend(unknown_keys(&settings, &machine, &events)?);
     if !errors.is_empty() {
         errors.sort_by_key(|error| error.line);
         return Err(Unrun::Script(errors));
     }
-    settings = first;
     events.retain(|event| event.tick > 0 || !matches!(event.what, What::Set(..)));
     let folder = job.scenario.parent().unwrap_or(Path::new(""));
     for event in &mut events {
@@ -189,6 +193,20 @@ fn prepare(job: &Job, mut events: Vec<Event>) -> Result<(Settings, Machine, Vec<
         }
     }
     Ok((settings, machine, events))
+}
+
+/// Expectations of what the state does not have.
+fn unknown_keys(settings: &Settings, machine: &Machine, events: &[Event]) -> Result<Vec<ScriptError>, Unrun> {
+    let state = control(settings.clone(), *machine, Vec::new(), None, None, ProgressBar::hidden())?.state();
+    let known = state.as_object().map(|fields| fields.keys().cloned().collect::<Vec<_>>().join(", "));
+    let remedy = format!("the state has {}", known.unwrap_or_default());
+    let unknown = |event: &Event| match &event.what {
+        What::Expect(expect) if !expect::is_known(&state, &expect.key) => {
+            Some(error_of(event, format!("the state has no {}", expect.key), remedy.clone()))
+        }
+        _ => None,
+    };
+    Ok(events.iter().filter_map(unknown).collect())
 }
 
 /// Settings with one set, and their machine.
@@ -253,6 +271,27 @@ fn places(job: &Job, outputs: &Outputs) -> io::Result<()> {
     outputs.trace.iter().chain(&outputs.report).chain(&outputs.pictures).try_for_each(|path| places.output(path))
 }
 
+/// Width of pictures, pixels.
+const WIDTH: u32 = 1600;
+
+/// What stands beside the title.
+fn facts(done: &Done) -> String {
+    let seconds = expect::at(&done.state, "tick").and_then(serde_json::Value::as_f64).unwrap_or(0.0) / 1e3;
+    let hash = expect::at(&done.state, "train_hash").and_then(serde_json::Value::as_str).unwrap_or_default();
+    format!("{seconds:.3} s · train {hash}")
+}
+
+/// Writes a picture as its name's ending says.
+fn draw(path: &Path, svg: &str) -> io::Result<Pending> {
+    let mut file = Pending::create(path)?;
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+        file.writer().write_all(&picture::png(svg, WIDTH).map_err(io::Error::other)?)?;
+    } else {
+        file.writer().write_all(svg.as_bytes())?;
+    }
+    Ok(file)
+}
+
 /// Writes what was asked for, and tells; the exit code.
 fn conclude(name: &str, outputs: &Outputs, mut done: Done) -> io::Result<u8> {
     let json = format!("{:#}\n", done.state);
@@ -261,6 +300,14 @@ fn conclude(name: &str, outputs: &Outputs, mut done: Done) -> io::Result<u8> {
         let mut file = Pending::create(path)?;
         file.writer().write_all(json.as_bytes())?;
         files.push(file);
+    }
+    let title =
+        Path::new(name).file_stem().map_or_else(|| name.into(), |stem| stem.to_string_lossy().replace('-', " "));
+    if !outputs.pictures.is_empty() {
+        let svg = sheet::sheet(&title, facts(&done), &done.chronicle, &done.machine).svg(WIDTH);
+        for path in &outputs.pictures {
+            files.push(draw(path, &svg)?);
+        }
     }
     let mut told = String::new();
     for failed in &done.failed {

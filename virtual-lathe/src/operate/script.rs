@@ -87,7 +87,7 @@ impl<'t> Words<'t> {
     pub(super) fn one_of<T: Clone>(&mut self, what: &str, list: &[(&str, T)]) -> Result<T, Wrong> {
         let names: Vec<&str> = list.iter().map(|(name, _)| *name).collect();
         let remedy = format!("write one of {}", names.join(", "));
-        let word = self.need(what, &remedy)?;
+        let word = self.need(&format!("the {what}"), &remedy)?;
         let found = list.iter().find(|(name, _)| *name == word);
         found.map(|(_, value)| value.clone()).ok_or_else(|| (format!("{word} is no {what}"), remedy))
     }
@@ -106,7 +106,7 @@ impl<'t> Words<'t> {
     pub(super) fn number(&mut self, what: &str, places: u32, range: (i64, i64), unit: &str) -> Result<i64, Wrong> {
         let one = 10_i64.pow(places);
         let remedy = format!("write a number from {} to {}{unit}", range.0 / one, range.1 / one);
-        let word = self.need(what, &remedy)?;
+        let word = self.need(&format!("the {what}"), &remedy)?;
         let Some(value) = scaled(word, places) else {
             return Err((format!("{word} is no number"), remedy));
         };

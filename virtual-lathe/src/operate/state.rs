@@ -11,13 +11,15 @@ use super::bench::Bench;
 pub struct Refused {
     /// Ticks from the start.
     pub tick: u64,
+    /// When it came last.
+    pub last: u64,
     /// Line of the script, 0 where no event asked for it.
     pub line: u32,
     /// Its name of one word.
     pub name: String,
     /// What there is to say.
     pub text: String,
-    /// How often it came within a second of the time before.
+    /// How often it came, each time within a second of the one before.
     pub times: u32,
 }
 
@@ -82,6 +84,7 @@ pub(super) fn json(view: &View<'_>) -> Value {
 fn detail(refused: &Refused) -> Value {
     json!({
         "tick": refused.tick,
+        "last": refused.last,
         "line": refused.line,
         "name": refused.name,
         "text": refused.text,

@@ -19,6 +19,9 @@ const ALL: &str = "load, mode, start, hold, reset, mdi, home, single, dry-run, l
                    spindle-wobble, spindle-override, threading-lever, pick-up, keep-offset, null-offset, book-wear, estop, \
                    release, motors, confirm-position, power-fail, power-on, resume, limit, guard, noise, lose-index, expect, end";
 
+/// Time of a detent that is turned at once: as fast as a hand can, a count a tick.
+const AT_ONCE_NS: u32 = 4_000_000;
+
 /// Most detents of one turn: 1000 turns of a wheel of 100.
 const DETENTS: i64 = 100_000;
 
@@ -118,8 +121,7 @@ fn turn(words: &mut Words<'_>) -> Result<What, Wrong> {
     let wheel = words.one_of("wheel", &[("x", Wheel::X), ("z", Wheel::Z), ("contour", Wheel::Contour)])?;
     let detents = words.number("number of detents", 0, (-DETENTS, DETENTS), "")?;
     let over = match words.next() {
-        // at once: within a tick
-        None => 1_000_000,
+        None => u64::from(AT_ONCE_NS) * detents.unsigned_abs(),
         Some("over") => words.number("time", 9, (1_000_000, 3_600_000_000_000), " s")?.unsigned_abs(),
         Some(other) => {
             return Err((format!("{other} is no time to turn over"), "write wheel x +-N [over SECONDS]".into()));

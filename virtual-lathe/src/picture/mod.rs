@@ -17,6 +17,7 @@ mod layout;
 mod main_view;
 mod methods;
 mod number;
+pub mod operation;
 mod page;
 mod pen;
 mod raster;
