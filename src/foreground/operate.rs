@@ -182,7 +182,14 @@ impl Foreground<'_> {
         }
         self.watch_switches();
         self.watch_limits();
-        self.desk.place = self.place();
+        let place = self.place();
+        for axis in AXES {
+            let moved = part(place, axis).wrapping_sub(part(self.desk.place, axis));
+            if moved != 0 {
+                *self.desk.power.came.of_mut(axis) = Some(moved > 0);
+            }
+        }
+        self.desk.place = place;
         self.desk.closed_loop.made(self.desk.place);
         self.desk.ticks = self.desk.ticks.wrapping_add(1);
     }

@@ -38,6 +38,8 @@ pub(super) struct Power {
     pub(super) feed: Feed,
     /// Shoulder stops, in the program's pulses.
     pub(super) stops: PerAxis<Option<i32>>,
+    /// Whether each axis moved to plus when it moved last.
+    pub(super) came: PerAxis<Option<bool>>,
     /// Where the last feed began.
     pub(super) began: Option<Lattice>,
     /// Feeds that are still to be made there and back, the present one included.
@@ -55,6 +57,7 @@ impl Power {
             phase: Phase::Rest,
             feed,
             stops: PerAxis { x: None, z: None },
+            came: PerAxis { x: None, z: None },
             began: None,
             repeats: 0,
             rapid: false,
@@ -75,9 +78,12 @@ impl Power {
         self.done = joystick;
     }
 
-    /// Where a feed along an axis from `from` ends: at the stop, where it lies that way, else at the limit.
+    /// Where a feed along an axis from `from` ends: at the stop, where it lies that way, else at the limit. An axis that
+    /// stands at its stop may leave it the way it came.
     pub(super) fn end(&self, axis: Axis, plus: bool, from: i32, limit: i32) -> i32 {
-        let stop = self.stops.of(axis).filter(|&stop| if plus { stop >= from } else { stop <= from });
+        let leaves = self.came.of(axis).is_some_and(|came| came != plus);
+        let ahead = |stop: i32| if plus { stop > from } else { stop < from };
+        let stop = self.stops.of(axis).filter(|&stop| ahead(stop) || stop == from && !leaves);
         match stop {
             Some(stop) if plus => stop.min(limit),
             Some(stop) => stop.max(limit),
