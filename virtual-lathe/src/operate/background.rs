@@ -171,6 +171,8 @@ impl Background {
                 return Err(Failure::new("nothing-to-resume", "the lead-in leaves the range"));
             }
             lead.extend(built.motions.iter().map(|motion| Block { line, work: Work::Motion(*motion) }));
+            // the program's builder knows nothing of the corner at its end: the tool stands there
+            lead.push(Block { line, work: Work::Dwell(0) });
         }
         Ok((source, lead))
     }

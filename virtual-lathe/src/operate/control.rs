@@ -310,6 +310,8 @@ impl Control {
                     Next::End => return Ok(Next::End),
                 }
             }
+            // what hands turn meanwhile is lost
+            let _ = self.bench.read(self.tick);
             let played = self.bench.dark();
             self.measure(&played)?;
             if self.is_over() {
@@ -460,6 +462,8 @@ impl Control {
         let at = place(foreground);
         let source = match self.background.program_from(at) {
             Ok(source) => source,
+            // what locks the machine is nearer than what is wrong with the program
+            Err(_) if foreground.alarm().is_some() => return self.command(line, Command::Start, foreground),
             Err(failure) => return self.outcome(line, Err(failure)),
         };
         match foreground.request(Command::Start) {
