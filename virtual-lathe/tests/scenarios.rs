@@ -45,3 +45,23 @@ fn every_scenario_expects_something() {
         assert!(text.contains(" expect "), "{} expects nothing", path.display());
     }
 }
+
+/// Names of refusals that no scenario needs to show.
+const NOT_SHOWN: [&str; 0] = [];
+
+#[test]
+fn every_refusal_by_name_is_shown_by_a_scenario() {
+    let text = include_str!("../../src/foreground/refusal.rs");
+    let names = text.split_once("pub const fn name").unwrap().1.split_once("impl fmt::Display").unwrap().0;
+    let names: Vec<&str> = names.split('"').skip(1).step_by(2).collect();
+    assert!(names.len() > 20, "{names:?}");
+    let mut shown = Vec::new();
+    for path in scenarios() {
+        let done = operate::perform(&Job { scenario: path, ..Job::default() }, None).unwrap();
+        let refused = done.state.get("refusals").and_then(serde_json::Value::as_array).cloned().unwrap_or_default();
+        shown.extend(refused.iter().filter_map(|name| name.as_str().map(str::to_owned)));
+    }
+    let missing: Vec<&&str> =
+        names.iter().filter(|name| !shown.iter().any(|shown| shown == *name) && !NOT_SHOWN.contains(name)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}

@@ -197,7 +197,6 @@ impl Control {
     /// What the operator's side is told when the control is switched on.
     fn switch_on(&mut self, foreground: &mut Foreground<'_>) {
         let parameters = &self.background.settings.parameters;
-        foreground.set_encoder(self.bench.spindle.turn());
         for (axis, table) in
             [(Axis::X, &self.background.settings.pitch.x), (Axis::Z, &self.background.settings.pitch.z)]
         {

@@ -54,11 +54,6 @@ impl Spindle {
         })
     }
 
-    /// Counts a turn.
-    pub(super) fn turn(&self) -> Option<u32> {
-        u32::try_from(self.turn).ok()
-    }
-
     /// An output of the program.
     pub(super) fn output(&mut self, output: Output) {
         match output {

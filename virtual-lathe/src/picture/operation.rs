@@ -24,7 +24,7 @@ pub struct Moment {
 impl Moment {
     /// Whether the tool is beside its program.
     fn is_led_off(&self) -> bool {
-        self.programmed.iter().zip(self.moved).any(|(program, tool)| (program - tool).abs() > 1e-9)
+        self.programmed.iter().zip(self.moved).any(|(program, tool)| (program - tool).abs() > SAME)
     }
 }
 
@@ -83,6 +83,8 @@ const LEGEND: f64 = 19.0;
 const STEPS: [f64; 2] = [80.0, 30.0];
 /// Thinning of lines, units.
 const FINE: f64 = 0.15;
+/// Places that differ by less are one, mm.
+const SAME: f64 = 1e-9;
 /// Between what is told of two marks.
 const BETWEEN: &str = "  \u{b7}  ";
 /// Marks that are told by name.
@@ -313,7 +315,8 @@ impl Operation {
         }
         pen.close();
         self.lines(pen, "tool", TOOL, |_| true, |moment| at(moment.time, value(moment.moved)));
-        self.lines(pen, "program", PROGRAM, Moment::is_led_off, |moment| at(moment.time, value(moment.programmed)));
+        let led_off = |moment: &Moment| (value(moment.programmed) - value(moment.moved)).abs() > SAME;
+        self.lines(pen, "program", PROGRAM, led_off, |moment| at(moment.time, value(moment.programmed)));
         frame_of(pen, frame);
         for value in up.labelled(low, high) {
             let [x, y] = at(0.0, value);
