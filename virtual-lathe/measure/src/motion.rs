@@ -4,15 +4,16 @@
 //! An axis may jump where the caller says that a motion ended or began.
 
 use crate::accel::Accel;
-use crate::fault::{Faults, Here};
+use crate::fault::{FaultKind, Faults, Here};
 use crate::hash::Fnv;
 use crate::pins::Port;
-use crate::setup::{CLOCKS_PER_TICK, PerAxis, Setup, SetupError};
+use crate::setup::{CLOCKS_PER_TICK, PerAxis, Setup, SetupError, clocks_for};
 
 /// Reads a pulse train, and knows no program.
 #[derive(Clone, Debug)]
 pub struct MotorWatch {
     setup: Setup,
+    event_min: u32,
     here: Here,
     port: Port,
     accel: Accel,
@@ -31,6 +32,7 @@ impl MotorWatch {
     pub fn new(setup: Setup) -> Result<Self, SetupError> {
         setup.check()?;
         Ok(Self {
+            event_min: shortest(&setup),
             here: Here { at: setup.start, ..Here::default() },
             port: Port::new(setup.limits),
             accel: Accel::new(&setup),
@@ -64,7 +66,7 @@ impl MotorWatch {
     /// As [`new`](Self::new); nothing has changed then.
     pub fn configure(&mut self, setup: Setup) -> Result<(), SetupError> {
         setup.check()?;
-        self.setup = setup;
+        (self.setup, self.event_min) = (setup, shortest(&setup));
         self.cut();
         Ok(())
     }
@@ -75,6 +77,11 @@ impl MotorWatch {
         let (start, pulses) = (self.here.clocks, self.pulses);
         for &event in events {
             self.hash.add(event);
+            let interval = event & 0xFFFF;
+            if interval < self.event_min {
+                let (found, bound) = (i64::from(interval), i64::from(self.event_min));
+                self.faults.add(self.here.fault(FaultKind::EventTooShort, None, found, bound));
+            }
             let moved = self.port.write(event, self.here, &mut self.faults);
             if moved != PerAxis::default() {
                 self.here.at.x = self.here.at.x.wrapping_add(moved.x);
@@ -85,12 +92,12 @@ impl MotorWatch {
                 self.accel.edge(moved, false, true);
                 on_step(self.here.clocks, self.here.at.x, self.here.at.z);
             }
-            self.here.clocks += u64::from(event & 0xFFFF);
+            self.here.clocks += u64::from(interval);
         }
         let sum = (self.here.clocks - start).cast_signed();
         let tick = i64::from(CLOCKS_PER_TICK);
         if sum != tick {
-            self.faults.add(self.here.fault(crate::FaultKind::TickSum, None, sum, tick));
+            self.faults.add(self.here.fault(FaultKind::TickSum, None, sum, tick));
         }
         self.accel.boundary(self.here, &mut self.faults);
         if self.pulses != pulses {
@@ -128,4 +135,9 @@ impl MotorWatch {
         self.accel.finish(self.here, &mut self.faults);
         self.faults
     }
+}
+
+/// Clocks of the shortest event.
+fn shortest(setup: &Setup) -> u32 {
+    u32::try_from(clocks_for(setup.event_min_ns)).unwrap_or(u32::MAX)
 }

@@ -1,7 +1,7 @@
 //! The command `operate`: the virtual lathe under a script of what an operator does.
 //!
-//! [`script`] reads the script, [`control`] runs it: events become requests and readings of the firmware's own foreground,
-//! [`bench`] is the machine that they come from, [`background`] feeds programs, [`state`] is what `expect` looks at.
+//! [`script`] reads the script, `control` runs it: events become requests and readings of the firmware's own foreground,
+//! `bench` is the machine that they come from, `background` feeds programs, [`state`] is what `expect` looks at.
 //!
 //! What the control makes in a tick is played in the next one, as on the chip. Nothing here takes the clock of the wall, and
 //! what looks like chance comes from a seed: a scenario gives the same state in every run.
@@ -14,6 +14,7 @@ pub mod event;
 pub mod expect;
 mod noise;
 pub mod number;
+mod obey;
 pub mod script;
 mod sheet;
 mod spindle;

@@ -1,0 +1,113 @@
+//! The watch without a program: it agrees with the checker on what both see, and finds what breaks a limit.
+#![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "helpers of tests may panic as tests do")]
+
+mod common;
+
+use common::{Step, X, X_PLUS, at, changes, line, line_steps, setup, ticks};
+use measure::{Checker, FaultKind, Faults, MotorWatch, PerAxis};
+
+/// The train of these steps.
+fn train(steps: &[Step]) -> Vec<Vec<u32>> {
+    ticks(&changes(steps))
+}
+
+/// X runs with an even acceleration (mm/s2) for so many ms, then at the speed reached as long, then brakes: pulses of 1 um.
+fn ramp(acceleration: f64, ms: f64) -> Vec<Step> {
+    let (a, t) = (acceleration * 1e-3, ms);
+    let speed = a * t;
+    let (first, second) = (a * t * t / 2.0, a * t * t / 2.0 + speed * t);
+    let whole = second + first;
+    let mut steps = Vec::new();
+    let mut pulse = 1.0;
+    while pulse <= whole.floor() {
+        let time = if pulse <= first {
+            (2.0 * pulse / a).sqrt()
+        } else if pulse <= second {
+            t + (pulse - first) / speed
+        } else {
+            3.0 * t - (2.0 * (whole - pulse) / a).sqrt()
+        };
+        steps.push(Step { clocks: at(0.1 + time / 1e3), x: 1, z: 0 });
+        pulse += 1.0;
+    }
+    steps
+}
+
+fn watch(steps: &[Step]) -> (Faults, PerAxis<u64>) {
+    let mut watch = MotorWatch::new(setup()).unwrap();
+    for tick in train(steps) {
+        watch.tick(&tick, &mut |_, _, _| {});
+    }
+    let pulses = watch.pulses();
+    (watch.finish(), pulses)
+}
+
+#[test]
+fn hash_and_pulses_are_the_checkers() {
+    let steps = line_steps(30, 50, 60.0);
+    let played = train(&steps);
+    let (mut checker, mut watch) = (Checker::new(setup()).unwrap(), MotorWatch::new(setup()).unwrap());
+    checker.motion(line(30_000, 50_000, 60.0));
+    let mut seen = Vec::new();
+    for tick in &played {
+        checker.tick(tick);
+        watch.tick(tick, &mut |_, x, z| seen.push((x, z)));
+    }
+    assert_eq!((watch.position(), watch.pulses()), (PerAxis { x: 30, z: 50 }, PerAxis { x: 30, z: 50 }));
+    assert_eq!(seen.last(), Some(&(30, 50)));
+    assert_eq!(watch.train_hash(), checker.finish().train_hash);
+}
+
+#[test]
+fn the_largest_acceleration_is_no_fault_and_a_larger_one_is() {
+    // the bound allows what rounding fakes: 4 pulses over 64 ms are a quarter of a percent of 1000 mm/s2
+    let (faults, pulses) = watch(&ramp(1_000.0, 80.0));
+    assert_eq!((faults.total(), pulses.x), (0, 12_800), "{:?}", faults.first());
+    let (faults, _) = watch(&ramp(1_030.0, 80.0));
+    assert!(faults.count(FaultKind::Acceleration) + faults.count(FaultKind::Jump) > 0);
+}
+
+#[test]
+fn a_speed_above_the_largest_is_a_fault() {
+    // 100 mm/s are allowed
+    assert_eq!(watch(&ramp(1_000.0, 99.0)).0.count(FaultKind::Speed), 0);
+    assert!(watch(&ramp(1_000.0, 103.0)).0.count(FaultKind::Speed) > 0);
+}
+
+#[test]
+fn pins_are_watched() {
+    let faulty = |changes: &[(u64, u32)]| {
+        let mut watch = MotorWatch::new(setup()).unwrap();
+        for tick in ticks(changes) {
+            watch.tick(&tick, &mut |_, _, _| {});
+        }
+        watch.finish()
+    };
+    let good = [(12_000, X_PLUS), (12_060, X_PLUS | X), (12_084, X_PLUS)];
+    assert_eq!(faulty(&good).total(), 0);
+    let narrow = [(12_000, X_PLUS), (12_060, X_PLUS | X), (12_083, X_PLUS)];
+    let faults = faulty(&narrow);
+    assert_eq!((faults.count(FaultKind::PulseTooShort), faults.count(FaultKind::EventTooShort)), (1, 1));
+    let hasty = [(12_000, X_PLUS), (12_059, X_PLUS | X), (12_084, X_PLUS)];
+    assert_eq!(faulty(&hasty).count(FaultKind::DirectionSetup), 1);
+}
+
+#[test]
+fn a_train_that_is_cut_off_at_full_speed_is_no_fault_where_it_is_told() {
+    let steps: Vec<Step> = ramp(1_000.0, 80.0).into_iter().take(6_000).collect();
+    let run = |cut: bool| {
+        let mut watch = MotorWatch::new(setup()).unwrap();
+        for tick in train(&steps) {
+            watch.tick(&tick, &mut |_, _, _| {});
+        }
+        if cut {
+            watch.cut();
+        }
+        for _ in 0..50 {
+            watch.tick(&[12_000], &mut |_, _, _| {});
+        }
+        watch.finish().total()
+    };
+    assert_eq!(run(true), 0);
+    assert!(run(false) > 0);
+}
