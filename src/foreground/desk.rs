@@ -10,6 +10,7 @@ use super::refusal::Refusal;
 use super::settings::Settings;
 use super::threads::{Lever, PickUp};
 use super::wheels::Wheels;
+use heapless::Deque;
 use interp_core::block::{Feed, Speed};
 use interp_core::config::Machine;
 use interp_core::drive::Trouble;
@@ -58,16 +59,18 @@ pub(super) struct Desk {
     pub(super) nulling: bool,
     /// Where the axes were at the end of the last tick, in the machine's own coordinates.
     pub(super) place: Lattice,
-    /// Ticks since power-on.
-    pub(super) ticks: u32,
+    /// And at the end of the one before.
+    pub(super) before: Lattice,
     /// The thread that is cut by hand.
     pub(super) lever: Lever,
     pub(super) pick_up: PickUp,
     /// Lead of the groove that is cut by hand.
     pub(super) thread_lead: Option<Lead>,
-    refused: Option<Refusal>,
-    refusals: u32,
+    refused: Deque<Refusal, REFUSALS>,
 }
+
+/// Refusals that are kept until somebody asks: a tick has few.
+const REFUSALS: usize = 8;
 
 impl Desk {
     pub(super) const fn new(machine: &Machine) -> Self {
@@ -99,25 +102,25 @@ impl Desk {
             trouble: None,
             nulling: false,
             place: NOWHERE,
-            ticks: 0,
+            before: NOWHERE,
             lever: Lever::Out,
             pick_up: PickUp::None,
             thread_lead: None,
-            refused: None,
-            refusals: 0,
+            refused: Deque::new(),
         }
     }
 
     /// Notes a refusal.
-    pub(super) const fn refuse(&mut self, refusal: Refusal) {
-        self.refused = Some(refusal);
-        self.refusals = self.refusals.wrapping_add(1);
+    pub(super) fn refuse(&mut self, refusal: Refusal) {
+        if self.refused.is_full() {
+            let _ = self.refused.pop_front();
+        }
+        // there is room now
+        let _ = self.refused.push_back(refusal);
     }
 
-    pub(super) const fn take_refusal(&mut self) -> (Option<Refusal>, u32) {
-        let count = self.refusals;
-        self.refusals = 0;
-        (self.refused.take(), count)
+    pub(super) fn take_refusal(&mut self) -> Option<Refusal> {
+        self.refused.pop_front()
     }
 
     /// How far a pulse moves an axis.

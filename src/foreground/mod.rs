@@ -92,7 +92,8 @@ impl<'q> Foreground<'q> {
         if let Some(trouble) = self.channel.fault() {
             self.raise(Alarm::of_trouble(trouble));
         }
-        self.outputs.follow(report.output, report.state, self.alarm, self.desk.motors);
+        let ends = matches!(report.state, State::Ended) && matches!(self.desk.mode, mode::Mode::Automatic);
+        self.outputs.follow(report.output, ends, self.alarm, self.desk.motors);
         report
     }
 
@@ -176,8 +177,8 @@ impl<'q> Foreground<'q> {
         }
     }
 
-    /// What was refused since this was last asked, the latest, and how many there were.
-    pub const fn refused(&mut self) -> (Option<Refusal>, u32) {
+    /// What was refused and not asked for yet: the oldest of at most 8.
+    pub fn refused(&mut self) -> Option<Refusal> {
         self.desk.take_refusal()
     }
 

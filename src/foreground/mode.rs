@@ -84,6 +84,8 @@ pub struct Situation {
     pub contour: bool,
     /// There is something to return from: a power feed was made.
     pub cut: bool,
+    /// A shoulder stop is set.
+    pub stop: bool,
     /// The position that a re-entry needs was kept.
     pub kept: bool,
     /// A thread is being cut.
@@ -133,6 +135,7 @@ pub fn refusal(command: &Command, now: &Situation) -> Option<Refusal> {
         Command::Return | Command::Repeat(_) if !matches!(mode, Mode::Power) => Some(Refusal::WrongMode(Mode::Power)),
         Command::Return if !now.cut => Some(Refusal::NothingToReturnFrom),
         Command::Return => locked(now).or(guarded(now)).or(powered(now)).or(at_rest(now)),
+        Command::Repeat(1..) if !now.stop => Some(Refusal::NoStop),
         Command::Repeat(_) => at_rest(now),
         Command::KeepOffset | Command::BookWear => now.hands.then_some(Refusal::Moving),
         Command::NullOffset if now.thread => Some(Refusal::InThread),

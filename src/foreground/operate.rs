@@ -189,9 +189,8 @@ impl Foreground<'_> {
                 *self.desk.power.came.of_mut(axis) = Some(moved > 0);
             }
         }
-        self.desk.place = place;
+        (self.desk.before, self.desk.place) = (self.desk.place, place);
         self.desk.closed_loop.made(self.desk.place);
-        self.desk.ticks = self.desk.ticks.wrapping_add(1);
     }
 
     /// The guard holds what runs; a limit switch that an axis runs into is an alarm.

@@ -2,7 +2,6 @@
 
 use super::alarm::Alarm;
 use interp_core::block::Output;
-use interp_core::channel::State;
 
 /// What the board's outputs are to be.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -17,15 +16,15 @@ impl Outputs {
     /// At power-on: motors hold, the spindle stands.
     pub(super) const REST: Self = Self { motors: true, spindle: false };
 
-    /// After a tick in which the program set `output` and that left the channel in `state`: the end of a program and an
-    /// alarm switch the spindle off, an emergency stop the motors, too.
-    pub(super) const fn follow(&mut self, output: Option<Output>, state: State, alarm: Option<Alarm>, motors: bool) {
+    /// After a tick in which the program set `output`: the end of a program (that `ends`) and an alarm switch the spindle off,
+    /// an emergency stop the motors, too.
+    pub(super) const fn follow(&mut self, output: Option<Output>, ends: bool, alarm: Option<Alarm>, motors: bool) {
         match output {
             Some(Output::SpindleForward) => self.spindle = true,
             Some(Output::SpindleReverse | Output::SpindleStop) => self.spindle = false,
             Some(Output::SpindleSpeed(_) | Output::Tool(..)) | None => {}
         }
-        self.spindle &= !matches!(state, State::Ended) && alarm.is_none();
+        self.spindle &= !ends && alarm.is_none();
         self.motors = motors && !matches!(alarm, Some(Alarm::Emergency));
     }
 }

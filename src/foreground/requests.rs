@@ -39,6 +39,7 @@ impl Foreground<'_> {
             verified: desk.verified.x && desk.verified.z,
             contour: desk.contour.is_some(),
             cut: desk.power.began.is_some(),
+            stop: desk.power.stops.x.is_some() || desk.power.stops.z.is_some(),
             kept: desk.interrupted != 0,
             thread: self.channel.in_thread(),
         }
@@ -243,16 +244,15 @@ impl Foreground<'_> {
         offset
     }
 
+    /// Whether an axis has moved in the last tick, or its hand has.
+    fn moved(&self, axis: Axis) -> bool {
+        part(self.place(), axis) != part(self.desk.before, axis) || self.channel.hand_advance(axis) != 0
+    }
+
     /// After an alarm nobody may know where the axes are.
     pub(super) fn lose_place(&mut self, alarm: Alarm) {
-        let jump = |limits: &interp_core::config::AxisLimits| i64::from(limits.jump);
-        let machine = &self.desk.machine;
-        let fast = |axis: Axis| match axis {
-            Axis::X => self.channel.hand_advance(axis).saturating_abs() > jump(&machine.x),
-            Axis::Z => self.channel.hand_advance(axis).saturating_abs() > jump(&machine.z),
-        };
-        let path = u64::from(self.channel.speed()) > u64::from(machine.x.jump.min(machine.z.jump));
-        let lost = AXES.map(|axis| !alarm.brakes() && (path || fast(axis)) || alarm.loses_pulses());
+        // a tick is planned that is not played: an axis that moved at all is not where the plan has it
+        let lost = AXES.map(|axis| !alarm.brakes() && self.moved(axis) || alarm.loses_pulses());
         for (axis, lost) in AXES.into_iter().zip(lost) {
             *self.desk.verified.of_mut(axis) &= !lost;
         }

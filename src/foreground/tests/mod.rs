@@ -193,7 +193,7 @@ impl Bench {
 
     /// The last refusal, if any.
     fn refused(&mut self) -> Option<Refusal> {
-        self.foreground.refused().0
+        std::iter::from_fn(|| self.foreground.refused()).last()
     }
 
     /// Speed and acceleration of the whole track keep the machine's limits, whatever was done: over h = 1, 2, 4 .. 256 ticks

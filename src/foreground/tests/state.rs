@@ -78,6 +78,7 @@ fn the_table_of_modes() {
         verified: true,
         contour: false,
         cut: false,
+        stop: false,
         kept: false,
         thread: false,
     };
@@ -193,6 +194,7 @@ fn the_book_has_the_table() {
         verified: true,
         contour: true,
         cut: true,
+        stop: true,
         kept: true,
         thread: false,
     };

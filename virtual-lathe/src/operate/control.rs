@@ -225,9 +225,8 @@ impl Control {
         let report = foreground.tick(&mut |event: train::Event| made.push(event.word()));
         let (before, after) = (self.shown, foreground.shown());
         self.shown = after;
-        let (last, times) = foreground.refused();
-        if let Some(refusal) = last {
-            self.refuse_again(refusal, times);
+        while let Some(refusal) = foreground.refused() {
+            self.refuse_again(refusal, 1);
         }
         let ended = matches!(report.state, State::Ended) && !matches!(after.mode, Mode::ManualData);
         let program_ended = ended && self.background.is_busy();
