@@ -12,7 +12,7 @@ use super::threads::{Lever, PickUp};
 use super::wheels::Wheels;
 use heapless::Deque;
 use interp_core::block::{Feed, Speed};
-use interp_core::config::Machine;
+use interp_core::config::{FRACTION_BITS, Machine};
 use interp_core::drive::Trouble;
 use interp_core::drive::gearing::Lead;
 use interp_core::units::{Axis, Lattice, PulseSize};
@@ -59,6 +59,8 @@ pub(super) struct Desk {
     pub(super) nulling: bool,
     /// Where the axes were at the end of the last tick, in the machine's own coordinates.
     pub(super) place: Lattice,
+    /// Places of each axis, in the machine's own coordinates, from which no path is braked past a soft limit.
+    pub(super) calm: PerAxis<(i32, i32)>,
     /// And at the end of the one before.
     pub(super) before: Lattice,
     /// The thread that is cut by hand.
@@ -102,6 +104,7 @@ impl Desk {
             trouble: None,
             nulling: false,
             place: NOWHERE,
+            calm: PerAxis { x: (0, 0), z: (0, 0) },
             before: NOWHERE,
             lever: Lever::Out,
             pick_up: PickUp::None,
@@ -121,6 +124,23 @@ impl Desk {
 
     pub(super) fn take_refusal(&mut self) -> Option<Refusal> {
         self.refused.pop_front()
+    }
+
+    /// Finds where no path is braked past a soft limit: further from it than the way that braking takes from the largest
+    /// speed of any path, with what is planned already and the mean of an S law.
+    pub(super) fn find_calm(&mut self) {
+        let (x, z) = (&self.machine.x, &self.machine.z);
+        let speed = u64::from(x.speed).saturating_add(u64::from(z.speed));
+        let accel = u64::from(x.accel.min(z.accel).max(1));
+        let brakes = speed.saturating_mul(speed).checked_div(accel << 1).unwrap_or(u64::MAX);
+        let way = brakes.saturating_add(speed.saturating_mul(80)) >> FRACTION_BITS;
+        for axis in [Axis::X, Axis::Z] {
+            let pulse = self.pulse(axis);
+            let pulses = way.saturating_mul(u64::from(pulse.denominator())).checked_div(u64::from(pulse.numerator()));
+            let pulses = i32::try_from(pulses.unwrap_or(0)).unwrap_or(i32::MAX).saturating_add(2);
+            let (least, most) = self.settings.axes.of(axis).limits;
+            *self.calm.of_mut(axis) = (least.saturating_add(pulses), most.saturating_sub(pulses));
+        }
     }
 
     /// How far a pulse moves an axis.

@@ -1,7 +1,7 @@
 //! A tick of the operator's side: readings become motion, and what the channel does is overseen.
 
 use super::desk::part;
-use super::inputs::{AXES, Ends, Joystick, PerAxis};
+use super::inputs::{AXES, Ends, Inputs, Joystick, PerAxis};
 use super::mode::Mode;
 use super::power::Phase;
 use super::refusal::Refusal;
@@ -17,7 +17,9 @@ impl Foreground<'_> {
         if let Some(reading) = self.desk.inputs.spindle.take() {
             self.channel.read(&drive::Inputs { spindle: Some(reading), wheel: 0 });
         }
-        self.close_loop();
+        if self.desk.inputs.scales != Inputs::NONE.scales {
+            self.close_loop();
+        }
         self.turn_wheels();
         self.home_on();
         self.feed_on();
@@ -33,6 +35,9 @@ impl Foreground<'_> {
             || matches!(self.desk.mode, Mode::Power) && !matches!(self.desk.power.phase, Phase::Contour);
         self.channel.fold_hands(folds, folds);
         if counts == (PerAxis { x: 0, z: 0 }) && self.channel.hands_rest() {
+            if self.desk.wheels.rest() {
+                return;
+            }
             // its rate falls meanwhile
             for axis in AXES {
                 self.desk.wheels.click(axis, 0);
@@ -180,13 +185,17 @@ impl Foreground<'_> {
         if self.desk.own_path && matches!(report.state, State::Idle | State::Ended) {
             self.desk.own_path = false;
         }
-        self.watch_switches();
-        self.watch_limits();
         let place = self.place();
-        for axis in AXES {
-            let moved = part(place, axis).wrapping_sub(part(self.desk.place, axis));
-            if moved != 0 {
-                *self.desk.power.came.of_mut(axis) = Some(moved > 0);
+        if self.desk.inputs.guard || self.desk.inputs.ends != Inputs::NONE.ends {
+            self.watch_switches(place);
+        }
+        if place != self.desk.place {
+            self.watch_limits(place);
+            for axis in AXES {
+                let moved = part(place, axis).wrapping_sub(part(self.desk.place, axis));
+                if moved != 0 {
+                    *self.desk.power.came.of_mut(axis) = Some(moved > 0);
+                }
             }
         }
         (self.desk.before, self.desk.place) = (self.desk.place, place);
@@ -194,7 +203,8 @@ impl Foreground<'_> {
     }
 
     /// The guard holds what runs; a limit switch that an axis runs into is an alarm.
-    fn watch_switches(&mut self) {
+    #[cold]
+    fn watch_switches(&mut self, at: Lattice) {
         let runs = matches!(self.channel.state(), State::Running | State::Filling);
         if self.desk.inputs.guard && runs && matches!(self.channel.drive(), Drive::Time) {
             let _ = self.channel.hold();
@@ -203,7 +213,6 @@ impl Foreground<'_> {
         if matches!(self.desk.mode, Mode::Homing) {
             return;
         }
-        let at = self.place();
         for axis in AXES {
             let (moved, Ends { plus, minus }) =
                 (part(at, axis).wrapping_sub(part(self.desk.place, axis)), *self.desk.inputs.ends.of(axis));
@@ -214,11 +223,22 @@ impl Foreground<'_> {
     }
 
     /// Holds a path that would lead an axis past its soft limit.
-    fn watch_limits(&mut self) {
+    fn watch_limits(&mut self, at: Lattice) {
+        let calm = &self.desk.calm;
+        let inside = |axis: Axis| {
+            let (least, most) = *calm.of(axis);
+            part(at, axis) > least && part(at, axis) < most
+        };
+        if !inside(Axis::X) || !inside(Axis::Z) {
+            self.watch_limits_closely(at);
+        }
+    }
+
+    #[cold]
+    fn watch_limits_closely(&mut self, at: Lattice) {
         if !matches!(self.channel.state(), State::Running) || self.channel.speed() == 0 {
             return;
         }
-        let at = self.place();
         let programmed = self.channel.position();
         for axis in AXES {
             if !self.desk.verified.of(axis) {

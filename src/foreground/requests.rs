@@ -70,9 +70,13 @@ impl Foreground<'_> {
             Command::Configure(machine) => {
                 if self.channel.configure(&machine) {
                     self.desk.machine = machine;
+                    self.desk.find_calm();
                 }
             }
-            Command::Settle(settings) => self.desk.settings = settings,
+            Command::Settle(settings) => {
+                self.desk.settings = settings;
+                self.desk.find_calm();
+            }
             Command::Scale(click) => self.desk.wheels.set_scale(click),
             Command::FeedRate(feed) => self.desk.power.feed = feed,
             Command::StopAt(axis, stop) => self.set_stop(axis, stop)?,

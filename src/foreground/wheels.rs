@@ -47,8 +47,13 @@ impl Wheels {
         let rate = self.rates.of_mut(axis);
         let before = *rate;
         let now = u32::from(counts.unsigned_abs()) << RATE_BITS;
-        *rate = before.wrapping_sub(before >> SMOOTH).wrapping_add(now >> SMOOTH);
+        *rate = before.saturating_sub((before >> SMOOTH).max(1)).wrapping_add(now >> SMOOTH);
         self.scale.unwrap_or_else(|| by_speed(before >> (RATE_BITS - 8)))
+    }
+
+    /// Whether both wheels have stood for so long that their rates are none.
+    pub(super) const fn rest(&self) -> bool {
+        self.rates.x == 0 && self.rates.z == 0
     }
 
     /// Notes counts that were dropped.

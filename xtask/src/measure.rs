@@ -100,7 +100,7 @@ const SINE: [&str; 7] = [
 ];
 
 /// Everything at once: both axes at 100 000 pulses a second, compensated, under the sine law, both handwheels turned.
-const EVERYTHING: [&str; 20] = [
+const EVERYTHING: [&str; 21] = [
     "x.pulse_nm=1000",
     "z.pulse_nm=1000",
     "x.max_feed=9000",
@@ -117,6 +117,7 @@ const EVERYTHING: [&str; 20] = [
     "z.thermal_um_per_m_k=11.5",
     "temperature_c=35",
     "accel=sine",
+    "max_jerk=200000",
     "handwheels=true",
     "60:wheel-x=3*2000",
     "60:wheel-z=-2*2000",

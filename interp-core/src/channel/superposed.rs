@@ -8,8 +8,8 @@
 //!
 //! **Opposite pulses cancel first.** A pulse that would turn its axis round is not made at once: it is owed. A pulse
 //! the other way, the program's or an added one, then cancels it, and neither is made. A second one the same way shows
-//! that the axis does turn: it is made, and the one still owed with the tick's end, so that a motor that has stood is not
-//! asked for two pulses at once. So does the time, after [`PATIENCE`] ticks. So a motor is at most one
+//! that the axis does turn: it is made, and the one still owed an eighth of a tick later, so that a motor that has stood is
+//! not asked for two pulses at once. So does the time, after [`PATIENCE`] ticks. So a motor is at most one
 //! pulse behind, and an axis that moves on under a compensation against its motion never turns round.
 //!
 //! A tick without such pulses knows nothing of all this.
@@ -62,23 +62,40 @@ impl Added {
         self.sign
     }
 
-    /// A pulse that is due (or none): what is to be made now of an axis that faces plus or not, at most one pulse.
-    fn offer(&mut self, pulse: i8, faces_plus: bool) -> i8 {
+    /// A pulse that is due (or none) at a clock: what is to be made now of an axis that faces plus or not, at most one pulse.
+    fn offer(&mut self, clock: u32, pulse: i8, faces_plus: bool) -> i8 {
         let owed = self.owed.wrapping_add(pulse);
         let turns = (owed > 0) != faces_plus;
-        let made = if owed == 0 || turns && owed.unsigned_abs() == 1 { 0 } else { owed.signum() };
-        (self.owed, self.waited) = (owed.wrapping_sub(made), if made == 0 && owed != 0 { self.waited } else { 0 });
-        made
-    }
-
-    /// A tick is over: what must not wait longer. What the axis need not turn round for does not wait.
-    fn patience(&mut self, patience: u8, faces_plus: bool) -> i8 {
-        if self.owed == 0 {
+        if owed == 0 || turns && owed.unsigned_abs() == 1 {
+            self.owed = owed;
+            self.waited = if owed == 0 { 0 } else { self.waited };
             return 0;
         }
-        if (self.owed > 0) == faces_plus {
-            self.waited = 0;
-            return core::mem::take(&mut self.owed);
+        (self.owed, self.waited) = (0, 0);
+        if owed.unsigned_abs() > 1 {
+            self.postpone(clock, owed.signum());
+        }
+        owed.signum()
+    }
+
+    /// Makes a pulse somewhat later: a motor that has stood is not asked for two at once.
+    #[cold]
+    fn postpone(&mut self, clock: u32, pulse: i8) {
+        if self.left == 0 {
+            let later = clock.saturating_add(TICK_CLOCKS / 8).min(LATE.max(clock));
+            (self.left, self.sign) = (1, pulse);
+            self.times = Times { time: later << FRACTION, spacing: 0 };
+        } else if self.sign == pulse {
+            self.left = self.left.wrapping_add(1);
+        } else {
+            self.left = self.left.wrapping_sub(1);
+        }
+    }
+
+    /// A tick is over: what must not wait longer.
+    fn patience(&mut self, patience: u8) -> i8 {
+        if self.owed == 0 {
+            return 0;
         }
         self.waited = self.waited.saturating_add(1);
         if self.waited < patience {
@@ -181,10 +198,10 @@ impl Superposed {
     /// Makes what the tick still owes. Where the program does not move nothing of its own can cancel a pulse, and none waits.
     #[cold]
     pub fn end(&mut self, moves: bool, shaper: &mut Shaper, out: &mut impl Train) {
-        self.until(TICK_CLOCKS, shaper, out);
+        // what was postponed may be due past the tick
+        self.until(u32::MAX, shaper, out);
         let patience = if moves { PATIENCE } else { 0 };
-        let x = self.x.patience(patience, shaper.faces_plus(Axis::X));
-        let z = self.z.patience(patience, shaper.faces_plus(Axis::Z));
+        let (x, z) = (self.x.patience(patience), self.z.patience(patience));
         self.make(LATE, [x, z], Step { x: 0, z: 0 }, shaper, out);
         self.live = self.x.owed != 0 || self.z.owed != 0;
     }
@@ -192,7 +209,7 @@ impl Superposed {
     /// Makes what is due until `clock`.
     fn until(&mut self, clock: u32, shaper: &mut Shaper, out: &mut impl Train) {
         while let Some(next) = self.next() {
-            let due = next >> FRACTION;
+            let due = (next >> FRACTION).min(TICK_CLOCKS);
             if due > clock {
                 return;
             }
@@ -204,8 +221,8 @@ impl Superposed {
 
     /// Offers a step to both axes and makes what they make of it; `program` of it is the program's.
     fn offer(&mut self, clock: u32, step: Step, program: Step, shaper: &mut Shaper, out: &mut impl Train) {
-        let x = if step.x == 0 { 0 } else { self.x.offer(step.x, shaper.faces_plus(Axis::X)) };
-        let z = if step.z == 0 { 0 } else { self.z.offer(step.z, shaper.faces_plus(Axis::Z)) };
+        let x = if step.x == 0 { 0 } else { self.x.offer(clock, step.x, shaper.faces_plus(Axis::X)) };
+        let z = if step.z == 0 { 0 } else { self.z.offer(clock, step.z, shaper.faces_plus(Axis::Z)) };
         self.make(clock, [x, z], program, shaper, out);
     }
 
