@@ -35,7 +35,6 @@ mod app {
     use handcnc::background::status::Status;
     use handcnc::foreground::alarm::{Alarm, Faults};
     use handcnc::foreground::heartbeat::Heartbeat;
-    use handcnc::foreground::inputs::Inputs;
     use handcnc::foreground::train_queue::{Player, TrainQueue, Writer};
     use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
     use handcnc::queue::{Consumer, Producer, Queue};
@@ -204,9 +203,7 @@ mod app {
         width.set(foreground.pulse_width()); // of the tick that is being played
         let faults = Faults { underruns: train.underruns(), overruns: train.overruns(), late: LATE.load(Relaxed) };
         foreground.watch(faults, taken(&STRUCK) || contact.is_open());
-        let mut inputs = Inputs::NONE;
-        bench.due(foreground.state(), &mut |act| foreground.act(act, &mut inputs));
-        foreground.read(&inputs);
+        bench.due(foreground.state(), &mut |act| foreground.act(act));
         let report = foreground.tick(train);
         train.publish();
         if !STRUCK.load(Relaxed) {

@@ -151,11 +151,11 @@ impl<'q> Foreground<'q> {
         self.desk.own.clear();
     }
 
-    /// Does what an operator does: a request at once, a turn of the wheels with the readings of the tick.
-    pub fn act(&mut self, act: Act, inputs: &mut Inputs) {
+    /// Does what an operator does: a request at once, a turn of the wheels in the tick to come.
+    pub fn act(&mut self, act: Act) {
         match act {
             Act::Command(command) => self.obey(command),
-            Act::Wheels(..) => act.turn(inputs),
+            Act::Wheels(..) => act.turn(&mut self.desk.inputs),
         }
     }
 

@@ -4,7 +4,6 @@ use anyhow::{Result, bail};
 use feature_editor::codes::{Detector, Format, Item};
 use handcnc::background::compile::{Compiler, Finding};
 use handcnc::background::parameters::Parameters;
-use handcnc::foreground::inputs::Inputs;
 use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
 use handcnc::queue::Queue;
 use interp_core::block::{Block, Work};
@@ -93,9 +92,7 @@ pub(crate) fn run(trial: &Trial, most: usize, take: &mut Take<'_>) -> Result<()>
             left -= 1;
         }
         let mut events = Vec::new();
-        let mut inputs = Inputs::NONE;
-        rehearsal.due(foreground.state(), &mut |act| foreground.act(act, &mut inputs));
-        foreground.read(&inputs);
+        rehearsal.due(foreground.state(), &mut |act| foreground.act(act));
         let report = foreground.tick(&mut |event| events.push(event));
         if report.in_cycle && !take(&events) {
             return Ok(());
