@@ -7,7 +7,7 @@
 //!
 //! The curve stays where it was programmed: moved or sized so that it passes through both rounded ends, a flat ellipse or a
 //! steep parabola would be off it elsewhere by half a pulse times its axes' ratio or its slope. So the ends are up to half
-//! a pulse off the curve each way, and the walk is [led](super::leads) to them.
+//! a pulse off the curve each way, and the walk is led to them (`leads.rs`).
 //!
 //! Where, and [part by part](super::conic_part) in which order; when is told by [`Pieces`](crate::block::Pieces), which
 //! cuts a conic into parts with a timeline.
