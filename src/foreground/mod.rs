@@ -190,7 +190,7 @@ impl<'q> Foreground<'q> {
 
     /// Whether the look-ahead has room for blocks that may still come: a sender that is late now delays the cycle.
     pub fn is_hungry(&self) -> bool {
-        self.channel.is_hungry()
+        self.channel.is_hungry() && !self.blocks.ready()
     }
 
     /// What the lathe is doing.
