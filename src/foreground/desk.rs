@@ -15,7 +15,7 @@ use interp_core::block::{Feed, Speed};
 use interp_core::config::{FRACTION_BITS, Machine};
 use interp_core::drive::Trouble;
 use interp_core::drive::gearing::Lead;
-use interp_core::units::{Axis, Lattice, PulseSize};
+use interp_core::units::{Axis, Lattice, Length, PulseSize};
 
 /// The operator's side of a lathe.
 #[derive(Clone, Debug)]
@@ -32,8 +32,8 @@ pub(super) struct Desk {
     pub(super) power: Power,
     pub(super) homing: homing::Phase,
     pub(super) dry_run: bool,
-    /// Machine lock: where the axes stand meanwhile, and their offset.
-    pub(super) locked: Option<(Lattice, Lattice)>,
+    /// Machine lock: where the axes stand meanwhile.
+    pub(super) locked: Option<Locked>,
     /// The motors' drivers are to be on.
     pub(super) motors: bool,
     /// Where the axes are, is known.
@@ -73,6 +73,17 @@ pub(super) struct Desk {
 
 /// Refusals that are kept until somebody asks: a tick has few.
 const REFUSALS: usize = 8;
+
+/// What machine lock brings back when it ends: all that tells where the axes are.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Locked {
+    pub(super) position: Lattice,
+    pub(super) offset: Lattice,
+    pub(super) kept: Lattice,
+    pub(super) wear: Lattice,
+    pub(super) datum: Lattice,
+    pub(super) verified: PerAxis<bool>,
+}
 
 impl Desk {
     pub(super) const fn new(machine: &Machine) -> Self {
@@ -131,7 +142,9 @@ impl Desk {
     pub(super) fn find_calm(&mut self) {
         let (x, z) = (&self.machine.x, &self.machine.z);
         let speed = u64::from(x.speed).saturating_add(u64::from(z.speed));
-        let accel = u64::from(x.accel.min(z.accel).max(1));
+        // a hand brakes with its share
+        let least = |accel: u32, by_hand: u32| if by_hand > 0 { accel.min(by_hand) } else { accel };
+        let accel = u64::from(least(x.accel, x.by_hand).min(least(z.accel, z.by_hand)).max(1));
         let brakes = speed.saturating_mul(speed).checked_div(accel << 1).unwrap_or(u64::MAX);
         let way = brakes.saturating_add(speed.saturating_mul(80)) >> FRACTION_BITS;
         for axis in [Axis::X, Axis::Z] {
@@ -148,6 +161,24 @@ impl Desk {
         match axis {
             Axis::X => self.machine.x.pulse,
             Axis::Z => self.machine.z.pulse,
+        }
+    }
+
+    /// A place in the program's pulses, as far as there is a length for it.
+    pub(super) const fn representable(&self, axis: Axis, at: i32) -> i32 {
+        let (pulse, limit) = (self.pulse(axis), Length::LIMIT_NM as i64);
+        let (least, most) = match (Length::from_nm(limit.wrapping_neg()), Length::from_nm(limit)) {
+            (Some(least), Some(most)) => (pulse.nearest(least), pulse.nearest(most)),
+            _ => (0, 0),
+        };
+        // half a pulse beyond may be none
+        let (least, most) = (least.saturating_add(1), most.saturating_sub(1));
+        if at < least {
+            least
+        } else if at > most {
+            most
+        } else {
+            at
         }
     }
 

@@ -256,6 +256,11 @@ impl<'q> Foreground<'q> {
         self.channel.offset()
     }
 
+    /// Whether no handwheel's axis moves, nor has to.
+    pub const fn hands_rest(&self) -> bool {
+        self.channel.hands_rest()
+    }
+
     /// Percent of the programmed feed.
     pub const fn feed_override(&self) -> u16 {
         self.channel.feed_override()

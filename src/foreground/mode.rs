@@ -139,6 +139,8 @@ pub fn refusal(command: &Command, now: &Situation) -> Option<Refusal> {
         Command::Repeat(_) => at_rest(now),
         Command::KeepOffset | Command::BookWear => now.hands.then_some(Refusal::Moving),
         Command::NullOffset if now.thread => Some(Refusal::InThread),
+        // homing moves an axis by the same hand
+        Command::NullOffset if matches!(mode, Mode::Homing) => locked(now).or(powered(now)).or(at_rest(now)),
         Command::NullOffset => locked(now).or(powered(now)),
         Command::Lever(false) => None,
         Command::Lever(true) if !matches!(mode, Mode::Power) => Some(Refusal::WrongMode(Mode::Power)),

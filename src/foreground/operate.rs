@@ -25,14 +25,17 @@ impl Foreground<'_> {
         self.feed_on();
         self.turn_contour();
         self.start_when_still();
+        self.watch_start();
     }
 
     /// The handwheels of X and Z.
     fn turn_wheels(&mut self) {
         let counts = self.desk.inputs.wheels;
         self.desk.inputs.wheels = PerAxis { x: 0, z: 0 };
-        let folds = matches!(self.desk.mode, Mode::Handwheel)
+        let slides = matches!(self.desk.mode, Mode::Handwheel)
             || matches!(self.desk.mode, Mode::Power) && !matches!(self.desk.power.phase, Phase::Contour);
+        // what is nulled is the offset, in every mode
+        let folds = slides && !self.desk.nulling;
         self.channel.fold_hands(folds, folds);
         if counts == (PerAxis { x: 0, z: 0 }) && self.channel.hands_rest() {
             if self.desk.wheels.rest() {
@@ -55,12 +58,20 @@ impl Foreground<'_> {
                 }
                 continue;
             }
+            let (mut least, mut most) = self.desk.room(axis, part(place, axis));
+            if self.channel.speed() > 0 {
+                // the path and the hand may have to brake for one and the same limit
+                let braking = self.braking_pulses(axis);
+                (least, most) = (least.saturating_add(braking).min(0), most.saturating_sub(braking).max(0));
+            }
             // what moves by itself is not a wheel's: a turn takes it over
             if counts == 0 && self.desk.nulling {
+                if self.channel.limit_hand(axis, (least, most)) {
+                    self.desk.refuse(Refusal::Limit(axis, part(self.channel.offset(), axis) < 0));
+                }
                 continue;
             }
             self.desk.nulling = false;
-            let (mut least, mut most) = self.desk.room(axis, part(place, axis));
             if !folds {
                 let (bounds, offset) = (self.desk.settings.axes.of(axis).bounds, part(self.channel.offset(), axis));
                 least = least.max(bounds.0.saturating_sub(offset).min(0));
@@ -106,7 +117,8 @@ impl Foreground<'_> {
             return;
         }
         let idle = matches!(self.channel.state(), State::Idle | State::Ended);
-        if idle && matches!(self.desk.mode, Mode::Linked) && !self.begin_contour() {
+        // a path begins when the handwheels rest: they have all of the acceleration until then
+        if idle && matches!(self.desk.mode, Mode::Linked) && !(self.channel.hands_rest() && self.begin_contour()) {
             drop(&mut self.desk);
             return;
         }
@@ -239,36 +251,85 @@ impl Foreground<'_> {
         if !matches!(self.channel.state(), State::Running) || self.channel.speed() == 0 {
             return;
         }
-        let programmed = self.channel.position();
         for axis in AXES {
-            if !self.desk.verified.of(axis) {
-                continue;
-            }
-            let (least, most) = self.desk.settings.axes.of(axis).limits;
-            let shift = part(at, axis).wrapping_sub(part(programmed, axis));
             let moved = part(at, axis).wrapping_sub(part(self.desk.place, axis));
-            let near = self.braking_pulses(axis);
-            let (mut plus, mut minus) = (false, false);
-            for (low, high) in self.channel.extents().into_iter().flatten() {
-                minus |= part(low, axis).saturating_add(shift) < least;
-                plus |= part(high, axis).saturating_add(shift) > most;
-            }
-            let to_plus = plus && moved >= 0 && most.saturating_sub(part(at, axis)) <= near;
-            let to_minus = minus && moved <= 0 && part(at, axis).saturating_sub(least) <= near;
-            if to_plus || to_minus {
-                let _ = self.channel.hold();
-                self.desk.refuse(Refusal::Limit(axis, to_plus));
+            let (near, hand) = (self.braking_pulses(axis), self.hand_pulses(axis));
+            let minus = if moved <= 0 { near.saturating_sub(hand.min(0)) } else { -1 };
+            let plus = if moved >= 0 { near.saturating_add(hand.max(0)) } else { -1 };
+            if self.stop_at_limit(axis, at, (minus, plus), hand) {
                 return;
             }
         }
     }
 
+    /// Holds a path that stands and would begin past a soft limit, before it moves.
+    fn watch_start(&mut self) {
+        let stands = matches!(self.channel.state(), State::Running) && self.channel.speed() == 0;
+        if !stands || !matches!(self.channel.drive(), Drive::Time) {
+            return;
+        }
+        let at = self.place();
+        for axis in AXES {
+            let near = self.starting_pulses(axis);
+            if self.stop_at_limit(axis, at, (near, near), 0) {
+                return;
+            }
+        }
+    }
+
+    /// Holds the path where an axis is within so many pulses of its minus or plus limit, and the path leads farther and past it,
+    /// with what the axis's hand goes while it brakes.
+    fn stop_at_limit(&mut self, axis: Axis, at: Lattice, (minus, plus): (i32, i32), hand: i32) -> bool {
+        let ((least, most), here) = (self.desk.settings.axes.of(axis).limits, part(at, axis));
+        let near_minus = here.saturating_sub(least) <= minus && minus >= 0;
+        let near_plus = most.saturating_sub(here) <= plus && plus >= 0;
+        if !self.desk.verified.of(axis) || !near_minus && !near_plus {
+            return false;
+        }
+        let shift = here.wrapping_sub(part(self.channel.position(), axis));
+        let (mut low, mut high) = (here, here);
+        self.channel.extents(|least, most| {
+            low = low.min(part(least, axis).saturating_add(shift));
+            high = high.max(part(most, axis).saturating_add(shift));
+        });
+        let (low, high) = (low.saturating_add(hand.min(0)), high.saturating_add(hand.max(0)));
+        let to_plus = near_plus && high > most.max(here);
+        let passes = to_plus || near_minus && low < least.min(here);
+        if passes {
+            let _ = self.channel.hold();
+            self.desk.refuse(Refusal::Limit(axis, to_plus));
+        }
+        passes
+    }
+
+    /// Pulses that an axis goes at most if a path begins and is held after its first tick; an S law has begun more by then.
+    fn starting_pulses(&self, axis: Axis) -> i32 {
+        let machine = &self.desk.machine;
+        let limits = if matches!(axis, Axis::X) { &machine.x } else { &machine.z };
+        let (accel, window) = (u64::from(limits.accel.max(1)), u64::from(machine.smoothing.ticks()));
+        let speed = accel.saturating_mul(window.saturating_add(1)).saturating_add(limits.jump.into());
+        let brakes = speed.saturating_mul(speed).checked_div(accel << 1).unwrap_or(0);
+        let way = brakes.saturating_add(speed.saturating_mul(window.saturating_add(2)));
+        self.pulses_of(axis, way).saturating_add(2)
+    }
+
+    /// Whole pulses of so many nm with 12 fraction bits.
+    fn pulses_of(&self, axis: Axis, length: u64) -> i32 {
+        let (pulse, nm) = (self.desk.pulse(axis), length >> interp_core::config::FRACTION_BITS);
+        let pulses = nm.saturating_mul(u64::from(pulse.denominator())).checked_div(u64::from(pulse.numerator()));
+        i32::try_from(pulses.unwrap_or(0)).unwrap_or(i32::MAX >> 2)
+    }
+
+    /// Pulses that an axis's hand goes while it brakes, signed.
+    fn hand_pulses(&self, axis: Axis) -> i32 {
+        let braking = self.channel.hand_braking(axis);
+        let pulses = self.pulses_of(axis, braking.unsigned_abs());
+        if braking < 0 { pulses.wrapping_neg() } else { pulses }
+    }
+
     /// Pulses that an axis goes at most while the path brakes.
     fn braking_pulses(&self, axis: Axis) -> i32 {
-        let pulse = self.desk.pulse(axis);
-        let nm = self.channel.braking() >> interp_core::config::FRACTION_BITS;
-        let pulses = nm.saturating_mul(u64::from(pulse.denominator())).checked_div(u64::from(pulse.numerator()));
-        i32::try_from(pulses.unwrap_or(0)).unwrap_or(i32::MAX >> 2).saturating_add(2)
+        self.pulses_of(axis, self.channel.braking()).saturating_add(2)
     }
 
     /// Where a joystick that is latched leads, if anywhere.

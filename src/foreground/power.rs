@@ -157,7 +157,7 @@ impl Foreground<'_> {
         let far = if plus { room.1.min(FAR) } else { room.0.max(-FAR) };
         let end = self.desk.power.end(axis, plus, at, at.saturating_add(far));
         let mut to = position;
-        *part_mut(&mut to, axis) = end;
+        *part_mut(&mut to, axis) = self.desk.representable(axis, end);
         let (power, rapid) = (&mut self.desk.power, self.desk.inputs.rapid);
         (power.began, power.rapid, power.runs_at) = (Some(position), rapid, power.feed);
         if self.begin_line(to, self.desk.power.runs()) {

@@ -1,7 +1,7 @@
 //! Carries out requests that the [mode](super::mode) allows.
 
 use super::command::{Command, Stop};
-use super::desk::{part, part_mut};
+use super::desk::{Locked, part, part_mut};
 use super::homing;
 use super::inputs::{AXES, Joystick, PerAxis};
 use super::mode::{Mode, Situation};
@@ -22,6 +22,7 @@ impl Foreground<'_> {
         let runs = matches!(state, State::Running | State::Filling | State::Resetting);
         let moves = self.channel.speed() > 0
             || !self.channel.hands_rest()
+            || self.channel.owes()
             || desk.homing.axis().is_some()
             || desk.starting
             // a path that is driven by hand may stand as long as it likes
@@ -189,11 +190,20 @@ impl Foreground<'_> {
     /// Machine lock: while it is on only the display moves; then it goes back to where the axes are.
     fn lock(&mut self, on: bool) {
         if on && self.desk.locked.is_none() && self.channel.mute(true) {
-            self.desk.locked = Some((self.channel.position(), self.channel.offset()));
-        } else if let (false, Some((position, offset))) = (on, self.desk.locked.take()) {
+            let (position, offset) = (self.channel.position(), self.channel.offset());
+            let desk = &mut self.desk;
+            let (kept, wear, datum, verified) = (desk.kept, desk.wear, desk.datum, desk.verified);
+            desk.locked = Some(Locked { position, offset, kept, wear, datum, verified });
+        } else if let (false, Some(locked)) = (on, self.desk.locked.take()) {
+            self.drop_path();
             self.channel.mute(false);
-            self.channel.set_position(position);
-            self.channel.set_offset(offset);
+            self.channel.set_position(locked.position);
+            self.channel.set_offset(locked.offset);
+            let desk = &mut self.desk;
+            (desk.kept, desk.wear, desk.datum) = (locked.kept, locked.wear, locked.datum);
+            // what was lost meanwhile is lost; what was found was not the axes' place
+            desk.verified.x &= locked.verified.x;
+            desk.verified.z &= locked.verified.z;
         }
     }
 

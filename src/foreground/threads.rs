@@ -80,14 +80,18 @@ impl Foreground<'_> {
 
     /// The carriage follows the spindle to the stop, else towards the headstock.
     fn engage(&mut self, lead: Lead) -> Result<(), Refusal> {
-        self.drop_path();
         let position = self.channel.position();
         let plus = self.desk.power.stops.z.is_some_and(|stop| stop > position.z);
         let room = self.desk.room(Axis::Z, self.place().z);
         let far = if plus { room.1.min(super::power::FAR) } else { room.0.max(-super::power::FAR) };
         let mut to = position;
         let end = self.desk.power.end(Axis::Z, plus, position.z, position.z.saturating_add(far));
+        let end = self.desk.representable(Axis::Z, end);
         *part_mut(&mut to, Axis::Z) = end;
+        if end == position.z {
+            return Err(Refusal::Limit(Axis::Z, plus));
+        }
+        self.drop_path();
         if self.desk.thread_lead != Some(lead) && !matches!(self.desk.pick_up, PickUp::Active) {
             self.channel.set_groove(Some(Groove { z: position.z, angle: 0 }));
         }

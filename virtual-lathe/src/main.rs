@@ -23,6 +23,9 @@ enum Command {
     Turn(Turn),
     /// Operate the lathe as a script says: wheels, joystick, modes, programs, switches; print its final state.
     Operate(Operate),
+    /// Let random operators loose on random machines, and look that nothing they do breaks a rule; what fails is made short
+    /// and written as a scenario.
+    Soak(Soak),
     /// Run the lathe for a sender of G-code (Grbl 1.1 protocol) at a TCP port of this computer, until Ctrl-C.
     Serve(Serve),
     /// Run the programs that come with the lathe, and show them on one page.
@@ -96,6 +99,25 @@ struct Operate {
     /// written.
     #[arg(long, value_name = "FILE.svg|png", value_parser = picture_file)]
     picture: Option<PathBuf>,
+}
+
+#[derive(Args)]
+struct Soak {
+    /// Simulated hours.
+    #[arg(long, default_value_t = 1.0)]
+    hours: f64,
+    /// Where chance begins: the same seed gives the same sessions.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Run this scenario under the same rules, instead.
+    #[arg(long, value_name = "FILE")]
+    replay: Option<PathBuf>,
+    /// Where failures are written.
+    #[arg(long, value_name = "FOLDER", default_value = "out/soak")]
+    folder: PathBuf,
+    /// Go on until so many failures were found.
+    #[arg(long, default_value_t = 1)]
+    failures: u64,
 }
 
 #[derive(Args)]
@@ -192,6 +214,13 @@ fn main() -> ExitCode {
             trace: options.trace,
             report: options.report,
             picture: options.picture,
+        })),
+        Command::Soak(options) => ExitCode::from(operate::soak::soak(&operate::soak::Job {
+            hours: options.hours,
+            seed: options.seed,
+            replay: options.replay,
+            folder: options.folder,
+            failures: options.failures,
         })),
         Command::Serve(options) => ExitCode::from(serve::serve(&serve::Job {
             port: options.tcp,

@@ -53,15 +53,25 @@ impl Hand {
         if self.stopping && counts == 0 {
             return 0;
         }
-        let advance = self.follower.advance();
-        let speed = advance.unsigned_abs();
-        // v (v + a) / 2a: braking by a every tick
-        let braking = speed.wrapping_mul(speed.saturating_add(u64::from(bounds.accel)));
-        let braking = braking.checked_div(u64::from(bounds.accel.max(1)) << 1).unwrap_or(0).cast_signed();
-        let braking = if advance < 0 { braking.wrapping_neg() } else { braking };
+        let speed = self.follower.advance().saturating_abs();
         self.stopping = false;
-        let dropped = self.wheel.turn(click, counts, braking, speed.cast_signed());
+        let dropped = self.wheel.turn(click, counts, self.braking(bounds.accel), speed);
         dropped.saturating_add(self.wheel.limit(click, room))
+    }
+
+    /// How far it goes if it brakes by so much a tick, signed: v (v + a) / 2a.
+    pub fn braking(&self, accel: u32) -> i64 {
+        let advance = self.follower.advance();
+        let (speed, accel) = (advance.unsigned_abs(), u64::from(accel.max(1)));
+        let braking = speed.wrapping_mul(speed.saturating_add(accel));
+        let braking = braking.checked_div(accel << 1).unwrap_or(0).cast_signed();
+        if advance < 0 { braking.wrapping_neg() } else { braking }
+    }
+
+    /// Drops what leads out of the room. Whether anything does.
+    pub fn limit(&mut self, room: Room) -> bool {
+        let [least, ..] = Click::DECADES;
+        !self.stopping && self.wheel.limit(least, room) != 0
     }
 
     /// Asks for a distance in the place of all asked for before.

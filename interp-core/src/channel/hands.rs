@@ -152,7 +152,7 @@ impl Hands {
 impl<const N: usize> Channel<N> {
     /// Whether the program may move in the tick to come.
     const fn may_move(&self) -> bool {
-        self.speed > 0 || matches!(self.state, State::Running | State::Resetting)
+        self.speed > 0 || matches!(self.state, State::Running | State::Filling)
     }
 
     /// The tick of the hands: pulses of X and Z to be added to the program's, which pulls X out of a thread by `retract`.
@@ -212,6 +212,24 @@ impl<const N: usize> Channel<N> {
         hand.hand.go(by);
     }
 
+    /// Drops what an axis's hand still has to do beyond so many pulses to either side (at most 0, at least 0). Whether it was
+    /// too much.
+    pub fn limit_hand(&mut self, axis: Axis, room: (i32, i32)) -> bool {
+        let hand = self.hands.of(axis);
+        let to = |pulses: i32| hand.hand.to_pulses(pulses, hand.pulse);
+        let room = (to(room.0).min(0).max(ENDLESS.0), to(room.1).max(0).min(ENDLESS.1));
+        hand.hand.limit(room)
+    }
+
+    /// How far an axis's hand goes at most if it brakes now beside a program: nm with 12 fraction bits, signed.
+    pub fn hand_braking(&self, axis: Axis) -> i64 {
+        let hand = match axis {
+            Axis::X => &self.hands.x,
+            Axis::Z => &self.hands.z,
+        };
+        hand.hand.braking(hand.by_hand)
+    }
+
     /// Stops what a hand does, as soon as its acceleration allows.
     pub fn stop_hand(&mut self, axis: Axis) {
         self.hands.of(axis).hand.stop();
@@ -248,5 +266,6 @@ impl<const N: usize> Channel<N> {
     /// Calls the offset another one; nothing moves.
     pub const fn set_offset(&mut self, offset: Lattice) {
         self.hands.offset = offset;
+        self.compensation.rename(self.tool());
     }
 }

@@ -103,6 +103,11 @@ impl<const N: usize> Lookahead<N> {
         self.blocks.front().map(|next| (&next.block, next.entry))
     }
 
+    /// The blocks, the nearest first.
+    pub fn blocks(&self) -> impl Iterator<Item = &Block> {
+        self.blocks.iter().map(|planned| &planned.block)
+    }
+
     /// Sets the feed of all motions, but of threads.
     pub fn set_feed(&mut self, feed: Feed) {
         for planned in &mut self.blocks {

@@ -18,6 +18,7 @@ mod hands;
 mod lead;
 pub mod lookahead;
 mod margins;
+mod reach;
 mod retract;
 mod runner;
 mod single;
@@ -223,6 +224,8 @@ impl<const N: usize> Channel<N> {
             State::Idle | State::Ended => {
                 self.complete = false;
                 self.closed = false;
+                // another path's motions are no way back
+                self.trail.clear();
                 self.waited = 0;
                 self.single.pass_all();
                 self.state = State::Filling;
@@ -315,7 +318,7 @@ impl<const N: usize> Channel<N> {
         let idle = matches!(self.state, State::Idle | State::Ended) && self.hands.at_rest();
         if idle {
             self.position = position;
-            self.compensation.stand_at(position);
+            self.compensation.stand_at(self.tool());
         }
         idle
     }
@@ -326,7 +329,7 @@ impl<const N: usize> Channel<N> {
         if idle {
             self.shaper.configure(machine);
             self.hands.configure(machine);
-            self.compensation.configure(&machine.compensation, self.position);
+            self.compensation.configure(&machine.compensation, self.tool());
             self.rest = machine.x.jump.min(machine.z.jump);
             self.crank.configure(machine);
             self.window = Window::new(machine.smoothing);
@@ -340,7 +343,7 @@ impl<const N: usize> Channel<N> {
     pub fn set_pitch_table(&mut self, axis: Axis, table: &PitchTable) -> bool {
         let idle = matches!(self.state, State::Idle | State::Ended);
         if idle {
-            self.compensation.set_pitch_table(axis, table, self.position);
+            self.compensation.set_pitch_table(axis, table, self.tool());
         }
         idle
     }
@@ -384,29 +387,17 @@ impl<const N: usize> Channel<N> {
     /// How far the path would go if it braked now, at most: nm with 12 fraction bits.
     pub fn braking(&self) -> u64 {
         let Current::Motion(active) = &self.current else { return 0 };
-        let speed = u64::from(self.speed);
-        let brakes = square(self.speed).checked_div(u64::from(active.motion.accel.max(1)) << 1).unwrap_or(0);
-        // two ticks are planned already; an S law runs on by its window
-        brakes.saturating_add(speed.saturating_mul(u64::from(self.window.ticks()).saturating_add(2)))
+        let (accel, window) = (u64::from(active.motion.accel.max(1)), u64::from(self.window.ticks()));
+        // two ticks are planned already; an S law runs on by its window, and what it has planned is faster by as much
+        let speed = u64::from(self.speed).saturating_add(accel.saturating_mul(window));
+        let brakes = speed.saturating_mul(speed).checked_div(accel << 1).unwrap_or(0);
+        brakes.saturating_add(speed.saturating_mul(window.saturating_add(2)))
     }
 
-    /// The pulses, least and greatest, that a motion leads through from where the program is: the present one as a whole,
-    /// then the next. `None` where there is none.
-    pub fn extents(&self) -> [Option<(Lattice, Lattice)>; 2] {
-        let next = self.ahead.next().and_then(|(block, _)| lookahead::as_motion(block));
-        let (here, end) = match &self.current {
-            Current::Motion(active) => (Some(&active.motion), active.from),
-            Current::Nothing | Current::Dwell(_) => (None, self.position),
-        };
-        let (mut from, mut extents) = (end, [None; 2]);
-        for (extent, motion) in extents.iter_mut().zip([here, next]) {
-            let Some(motion) = motion else { continue };
-            let (least, most) = motion.curve.extent();
-            let add = |(x, z): (i32, i32)| Lattice { x: from.x.wrapping_add(x), z: from.z.wrapping_add(z) };
-            *extent = Some((add(least), add(most)));
-            from = add(motion.curve.end());
-        }
-        extents
+    /// Whether pulses are still to come that are added to a path that stands.
+    pub fn owes(&self) -> bool {
+        let stands = matches!(self.state, State::Holding | State::Stopped);
+        self.superposed.owes() || stands && self.compensation.is_on() && !self.compensation.rests()
     }
 
     /// Length of the present motion that is left, nm with 12 fraction bits.
@@ -467,12 +458,17 @@ impl<const N: usize> Channel<N> {
         Report { state: self.state, in_cycle, output, line: self.line, speed: self.speed, driven }
     }
 
+    /// The program's place with what the hands have added.
+    const fn tool(&self) -> Lattice {
+        let (position, offset) = (self.position, self.hands.offset());
+        Lattice { x: position.x.wrapping_add(offset.x), z: position.z.wrapping_add(offset.z) }
+    }
+
     /// Adds so many pulses, and what the compensation gives, to the tick.
     fn superpose(&mut self, x: i32, z: i32) {
         let (mut x, mut z) = (x, z);
         if self.compensation.is_on() {
-            let (position, offset) = (self.position, self.hands.offset());
-            let at = Lattice { x: position.x.wrapping_add(offset.x), z: position.z.wrapping_add(offset.z) };
+            let at = self.tool();
             let more = self.compensation.tick(at);
             (x, z) = (x.wrapping_add(more.0), z.wrapping_add(more.1));
         }
@@ -598,7 +594,8 @@ impl<const N: usize> Channel<N> {
             }
             Work::Motion(ref motion) => {
                 self.speed = if self.speed == 0 {
-                    root(entry)
+                    // planned to be entered at speed, it may come to be begun from a stand: single block, a hold at its joint
+                    root(entry).min(motion.start)
                 } else {
                     // what braking could not shed of a lowered feed goes on; what the machine can't take does not
                     self.speed.min(motion.joint).min(motion.limit)

@@ -77,6 +77,16 @@ impl Trail {
         self.before_newest(self.behind.checked_sub(1)?).map(|trod| &trod.motion)
     }
 
+    /// The motions before the one that the tool is in, the nearest first.
+    pub(super) fn earlier(&self) -> impl Iterator<Item = &Motion> {
+        self.motions.iter().rev().skip(self.behind.saturating_add(1)).map(|trod| &trod.motion)
+    }
+
+    /// The motions behind the one that the tool is in that were begun before, the nearest first.
+    pub(super) fn later(&self) -> impl Iterator<Item = &Motion> {
+        self.motions.iter().skip(self.motions.len().saturating_sub(self.behind)).map(|trod| &trod.motion)
+    }
+
     /// Goes to the motion before. False where there is none.
     pub(super) fn go_back(&mut self) -> bool {
         let goes = self.previous().is_some();

@@ -208,6 +208,10 @@ impl AxisCompensation {
         self.follower.follow(self.target, &self.plan.pace)
     }
 
+    const fn rests(&self) -> bool {
+        !self.plan.on || self.follower.rests_at(self.target)
+    }
+
     /// Whether all is given but for less than a pulse, and the follower may stop.
     const fn settled(&self) -> bool {
         !self.plan.on || self.follower.is_near(self.target, PULSE, &self.plan.pace)
@@ -278,10 +282,20 @@ impl Compensation {
         }
     }
 
-    /// The machine stands at `position`, which counts as right.
+    /// The machine stands at `position`, which counts as right; an axis whose place is as it was is not touched.
     pub fn stand_at(&mut self, position: Lattice) {
+        if position.x != self.at.x {
+            self.x.stand(position.x);
+        }
+        if position.z != self.at.z {
+            self.z.stand(position.z);
+        }
         self.at = position;
-        self.stand(position);
+    }
+
+    /// The place is called another one; nothing has moved.
+    pub const fn rename(&mut self, position: Lattice) {
+        self.at = position;
     }
 
     fn stand(&mut self, position: Lattice) {
@@ -298,6 +312,11 @@ impl Compensation {
     /// Whether each motor stands where it has to, but for less than a pulse.
     pub const fn settled(&self) -> bool {
         self.x.settled() && self.z.settled()
+    }
+
+    /// Whether each motor stands where it has to, and no pulse is to come.
+    pub const fn rests(&self) -> bool {
+        self.x.rests() && self.z.rests()
     }
 
     /// The pulses that each axis has to go in this tick beyond the program, which has got to `position`.

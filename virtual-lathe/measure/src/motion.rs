@@ -49,6 +49,11 @@ impl MotorWatch {
         self.accel.joint();
     }
 
+    /// In the tick to come pulses are added to the path's, by a handwheel or a compensation: they have a rounding of their own.
+    pub fn added(&mut self) {
+        self.accel.added();
+    }
+
     /// The axes stand since the last edge: one jump led there, one will lead away.
     pub fn rest(&mut self) {
         self.accel.rest();

@@ -77,6 +77,11 @@ impl Background {
     pub(super) fn load(&mut self, file: &Path, at: Point) -> Result<(), Failure> {
         let program =
             Program::open(file).map_err(|error| Failure::new("unreadable", format!("{}: {error}", file.display())))?;
+        self.take(program, at)
+    }
+
+    /// The same of a program that is there.
+    pub(super) fn take(&mut self, program: Program, at: Point) -> Result<(), Failure> {
         let format = match self.format {
             Some(format) => format,
             None => program.detect()?,
@@ -171,8 +176,8 @@ impl Background {
                 return Err(Failure::new("nothing-to-resume", "the lead-in leaves the range"));
             }
             lead.extend(built.motions.iter().map(|motion| Block { line, work: Work::Motion(*motion) }));
-            // the program's builder knows nothing of the corner at its end: the tool stands there
-            lead.push(Block { line, work: Work::Dwell(0) });
+            // the program's first motion knows nothing of the way that leads to it: it begins from standstill
+            lead.push(Block { line, work: Work::Dwell(1) });
         }
         Ok((source, lead))
     }

@@ -249,7 +249,8 @@ impl Control {
         let [before, now] = self.reports;
         let next = self.shown.distance_to_go > self.to_go;
         self.to_go = self.shown.distance_to_go;
-        let joint = next || before.line != now.line || before.state != now.state;
+        let stops = (before.speed == 0) != (now.speed == 0);
+        let joint = next || stops || before.line != now.line || before.state != now.state;
         if joint {
             self.watch.joint();
         }
@@ -345,7 +346,7 @@ impl Control {
 }
 
 /// What is to be seen of a lathe before it is switched on.
-fn at_first(machine: &Machine, at: Lattice) -> Shown {
+pub(super) fn at_first(machine: &Machine, at: Lattice) -> Shown {
     let (mut blocks, mut commands) = (Queue::<Block, 2>::new(), Queue::<Command, 2>::new());
     Foreground::new(machine, at, blocks.split().1, commands.split().1).shown()
 }

@@ -17,6 +17,7 @@ pub mod number;
 mod obey;
 pub mod script;
 mod sheet;
+pub mod soak;
 mod spindle;
 pub mod state;
 mod wheels;

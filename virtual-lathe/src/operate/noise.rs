@@ -18,6 +18,11 @@ impl Noise {
         self.rate = rate / 1e3;
     }
 
+    /// Whether no counts come.
+    pub(super) fn is_silent(&self) -> bool {
+        self.rate <= 0.0
+    }
+
     /// Counts of a tick, each to plus or to minus.
     pub(super) fn counts(&mut self) -> i16 {
         if self.rate <= 0.0 {
