@@ -1,8 +1,8 @@
 //! The command `soak`: random operators at random machines, and rules that nothing they do may break.
 //!
-//! A session is a random machine, random programs and what an [`operator`] does with them, all from a seed; the [`runner`] is
-//! that of a scenario without a model of motors; the [`oracle`] looks at every tick. What fails is made short
-//! ([`shrink`](mod@shrink)) and written as a scenario.
+//! A session is a random machine, random programs and what an `operator` does with them, all from a seed; the `runner` is
+//! that of a scenario without a model of motors; the `oracle` looks at every tick. What fails is made short
+//! (`shrink`(mod@shrink)) and written as a scenario.
 
 mod chance;
 mod clicks;
@@ -165,7 +165,7 @@ fn one(seed: u64) -> (Session, Outcome) {
         }
     };
     // the last 'spindle-wobble 0 0' begins what ends a session
-    let order = outcome.done.iter().filter(|(_, text)| text == "joystick off").map(|(tick, _)| *tick).last();
+    let order = outcome.done.iter().filter(|(_, text)| text == "joystick off").map(|(tick, _)| *tick).next_back();
     let lines = outcome.done.iter();
     session.lines = lines
         .map(|(tick, text)| Line { tick: *tick, text: text.clone(), fixed: *tick >= ticks && Some(*tick) >= order })

@@ -38,7 +38,7 @@ pub(super) fn program(chance: &mut Chance, taste: Taste) -> String {
             }
             2..=6 => {
                 let by = chance.spread(0.002, taste.reach);
-                let heading = chance.real(0.0, 6.283);
+                let heading = chance.real(0.0, std::f64::consts::TAU);
                 (x, z) = (grid(x + by * heading.sin()), grid(z + by * heading.cos()));
                 let _ = writeln!(text, "G1 X{x:.4} Z{z:.4}");
             }
@@ -48,7 +48,7 @@ pub(super) fn program(chance: &mut Chance, taste: Taste) -> String {
             }
             11..=12 => {
                 let (step, turn) = (chance.spread(0.005, 0.6), chance.real(-0.1, 0.1));
-                let mut heading = chance.real(0.0, 6.283);
+                let mut heading = chance.real(0.0, std::f64::consts::TAU);
                 for _ in 0..chance.whole(5, 60) {
                     heading += turn;
                     (x, z) = (grid(x + step * heading.sin()), grid(z + step * heading.cos()));
@@ -109,14 +109,10 @@ fn arc(chance: &mut Chance, (x, z): (f64, f64), (i, k): (f64, f64), text: &mut S
 /// what the compiler makes of it. `None` where it has none.
 pub(super) fn end(text: &str) -> Option<(i64, i64)> {
     let last = |letter: char| {
-        text.lines()
-            .filter(|line| !line.starts_with('/'))
-            .flat_map(str::split_whitespace)
-            .filter_map(|word| {
-                let number = word.strip_prefix(letter)?;
-                crate::operate::number::scaled(number, 6)
-            })
-            .last()
+        text.lines().filter(|line| !line.starts_with('/')).flat_map(str::split_whitespace).rev().find_map(|word| {
+            let number = word.strip_prefix(letter)?;
+            crate::operate::number::scaled(number, 6)
+        })
     };
     Some((last('X')?, last('Z')?))
 }

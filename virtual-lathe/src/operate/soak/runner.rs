@@ -531,7 +531,7 @@ impl<'s, H: Hand> Runner<'s, H> {
             Command::SpindleOverride(percent) => self.spindle.percent(percent),
             Command::FeedRate(Feed::PerTurn(_)) => self.oracle.spindle_is_asked(),
             Command::Scale(click) => {
-                let nm = click.map(|click| click.count() * COUNTS >> interp_core::config::FRACTION_BITS);
+                let nm = click.map(|click| (click.count() * COUNTS) >> interp_core::config::FRACTION_BITS);
                 self.oracle.scale(nm);
             }
             Command::Reset => {
