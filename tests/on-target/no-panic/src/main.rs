@@ -16,6 +16,7 @@ mod image {
     use handcnc::background::status::Status;
     use handcnc::foreground::alarm::{Alarm, Faults};
     use handcnc::foreground::heartbeat::Heartbeat;
+    use handcnc::foreground::inputs::Inputs;
     use handcnc::foreground::rehearsal::Rehearsal;
     use handcnc::foreground::train_queue::TrainQueue;
     use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
@@ -65,7 +66,7 @@ mod image {
         link.banner(&mut Out);
         let status = Status::new();
         let mut rehearsal = Rehearsal::new();
-        black_box(rehearsal.set(black_box(7), black_box(Command::Hold)));
+        black_box(rehearsal.set_word(black_box("7:hold")));
         let mut queue = TrainQueue::new();
         let (mut train, mut player) = queue.split();
         foreground.raise(black_box(Alarm::Watchdog));
@@ -82,7 +83,9 @@ mod image {
             black_box(link.work(&mut blocks_in, &mut commands_in, &status.snapshot(), &mut Out));
             let faults = Faults { underruns: train.underruns(), overruns: train.overruns(), late: black_box(0) };
             foreground.watch(faults, black_box(false));
-            rehearsal.due(foreground.state(), &mut |command| foreground.obey(command));
+            rehearsal.due(foreground.state(), &mut |act| foreground.act(act));
+            foreground.read(&black_box(Inputs::NONE));
+            black_box((foreground.shown(), foreground.refused(), foreground.kept()));
             let report = foreground.tick(&mut train);
             train.publish();
             black_box((foreground.outputs(), heartbeat.beat(black_box(true), report.speed)));
