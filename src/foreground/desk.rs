@@ -156,6 +156,15 @@ impl Desk {
         }
     }
 
+    /// Whether no path that is there is braked past a soft limit.
+    pub(super) fn is_calm(&self, at: Lattice) -> bool {
+        let inside = |axis: Axis| {
+            let (least, most) = *self.calm.of(axis);
+            part(at, axis) > least && part(at, axis) < most
+        };
+        inside(Axis::X) && inside(Axis::Z)
+    }
+
     /// How far a pulse moves an axis.
     pub(super) const fn pulse(&self, axis: Axis) -> PulseSize {
         match axis {

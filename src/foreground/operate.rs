@@ -236,12 +236,7 @@ impl Foreground<'_> {
 
     /// Holds a path that would lead an axis past its soft limit.
     fn watch_limits(&mut self, at: Lattice) {
-        let calm = &self.desk.calm;
-        let inside = |axis: Axis| {
-            let (least, most) = *calm.of(axis);
-            part(at, axis) > least && part(at, axis) < most
-        };
-        if !inside(Axis::X) || !inside(Axis::Z) {
+        if !self.desk.is_calm(at) {
             self.watch_limits_closely(at);
         }
     }
@@ -269,6 +264,9 @@ impl Foreground<'_> {
             return;
         }
         let at = self.place();
+        if self.desk.is_calm(at) {
+            return;
+        }
         for axis in AXES {
             let near = self.starting_pulses(axis);
             if self.stop_at_limit(axis, at, (near, near), 0) {
