@@ -84,6 +84,8 @@ impl Crank {
     /// Forgets all motion.
     pub(super) const fn stand(&mut self) {
         self.in_thread = false;
+        // another drive goes its own way: forward until it says otherwise
+        self.back = false;
         self.thread.end();
         self.driven.stage = ThreadStage::None;
         self.turns = !matches!(self.drive, Drive::Time);

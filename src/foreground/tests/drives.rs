@@ -78,3 +78,35 @@ fn a_held_program_is_retraced_and_goes_on_from_anywhere() {
     assert_eq!((bench.at, bench.shown().state), (Lattice { x: 6400, z: -2400 }, State::Ended));
     bench.keep_limits();
 }
+
+/// Retraced and run on, with an offset: the limit is looked for where the path goes now, not where the wheel led it last.
+#[test]
+fn behind_a_retrace_a_limit_ahead_is_seen() {
+    let mut bench = Bench::with(&[("x.limit_plus_mm", "6")]);
+    bench.ask(Command::Scale(Some(Click::DECADES[2]))).unwrap();
+    // short blocks: what is before the tool matters, not only the one that it is in
+    let mut text = std::string::String::from("G1 Z-1 F3000\n");
+    for tenth in 1..60 {
+        text += &std::format!("G1 X{}.{}\n", tenth / 10, tenth % 10);
+    }
+    bench.load(&text);
+    bench.ask(Command::Start).unwrap();
+    bench.ticks(30);
+    bench.ask(Command::Hold).unwrap();
+    bench.settle();
+    for _ in 0..3 {
+        bench.turn(Axis::X, 4, 1);
+        bench.ticks(60);
+    }
+    bench.settle();
+    assert_eq!(bench.shown().offset.x, 240);
+    bench.ask(Command::Mode(Mode::Retrace)).unwrap();
+    bench.turn_contour(-1, 30);
+    bench.settle();
+    bench.ask(Command::Mode(Mode::Automatic)).unwrap();
+    bench.ask(Command::Start).unwrap();
+    bench.settle();
+    assert_eq!((bench.shown().state, bench.refused()), (State::Holding, Some(Refusal::Limit(Axis::X, true))));
+    assert!(bench.track.iter().all(|at| at.x <= 4_800), "{:?}", bench.at);
+    bench.keep_limits();
+}
