@@ -80,8 +80,6 @@ pub struct Situation {
     pub motors: bool,
     /// Where the tool is, is known: of both axes.
     pub verified: bool,
-    /// A contour was entered.
-    pub contour: bool,
     /// There is something to return from: a power feed was made.
     pub cut: bool,
     /// A shoulder stop is set.

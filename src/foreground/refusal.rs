@@ -46,8 +46,6 @@ pub enum Refusal {
     InThread,
     /// The axis would leave its limits, to plus or minus.
     Limit(Axis, bool),
-    /// The wheel has led the path back to where it can't be undone.
-    WayBackEnds,
     /// The joystick asks for a path and there is none, or was latched when the mode was entered.
     JoystickLatched,
     /// The handwheels are switched off by a parameter.
@@ -86,7 +84,6 @@ impl Refusal {
             Self::Limit(Axis::X, false) => "limit-x-",
             Self::Limit(Axis::Z, true) => "limit-z+",
             Self::Limit(Axis::Z, false) => "limit-z-",
-            Self::WayBackEnds => "way-back-ends",
             Self::JoystickLatched => "joystick-latched",
             Self::WheelsOff => "wheels-off",
             Self::NoLead => "no-lead",
@@ -120,7 +117,6 @@ impl fmt::Display for Refusal {
             Self::Limit(axis, plus) => {
                 write!(f, "{} is at its {} limit", axis.letter(), if *plus { "plus" } else { "minus" })
             }
-            Self::WayBackEnds => f.write_str("the way back ends here: what comes before can't be undone"),
             Self::JoystickLatched => f.write_str("the joystick is latched: move it to the middle first"),
             Self::WheelsOff => f.write_str("the handwheels are switched off: set handwheels=true"),
             Self::NoLead => f.write_str("the lever needs a lead: set a feed rate in mm/rev"),

@@ -38,7 +38,6 @@ impl Foreground<'_> {
             guard: desk.inputs.guard,
             motors: desk.motors,
             verified: desk.verified.x && desk.verified.z,
-            contour: desk.contour.is_some(),
             cut: desk.power.began.is_some(),
             stop: desk.power.stops.x.is_some() || desk.power.stops.z.is_some(),
             kept: desk.interrupted != 0,

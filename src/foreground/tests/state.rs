@@ -62,29 +62,30 @@ fn what_is_refused_changes_nothing_in_any_mode() {
     assert!(refused > 60, "{refused}");
 }
 
+/// At rest in automatic, and nothing is in the way.
+const REST: Situation = Situation {
+    mode: Mode::Automatic,
+    state: State::Idle,
+    moves: false,
+    hands: false,
+    own_path: false,
+    alarm: None,
+    open: false,
+    guard: false,
+    motors: true,
+    verified: true,
+    cut: false,
+    stop: false,
+    kept: false,
+    thread: false,
+};
+
 /// The table in the book, as facts about the pure function.
 #[test]
 fn the_table_of_modes() {
-    let rest = Situation {
-        mode: Mode::Automatic,
-        state: State::Idle,
-        moves: false,
-        hands: false,
-        own_path: false,
-        alarm: None,
-        open: false,
-        guard: false,
-        motors: true,
-        verified: true,
-        contour: false,
-        cut: false,
-        stop: false,
-        kept: false,
-        thread: false,
-    };
     let refusal = |command: Command, now: Situation| mode::refusal(&command, &now);
     for mode in Mode::ALL {
-        let now = Situation { mode, ..rest };
+        let now = Situation { mode, ..REST };
         // cycle start where programs run
         let starts = matches!(mode, Mode::Automatic | Mode::ManualData | Mode::Linked);
         assert_eq!(refusal(Command::Start, now).is_none(), starts, "{mode:?}");
@@ -181,23 +182,7 @@ fn rapids_are_overridden_and_a_dry_run_has_its_own_feed() {
 fn the_book_has_the_table() {
     use std::fmt::Write;
     use std::string::String;
-    let rest = Situation {
-        mode: Mode::Automatic,
-        state: State::Idle,
-        moves: false,
-        hands: false,
-        own_path: false,
-        alarm: None,
-        open: false,
-        guard: false,
-        motors: true,
-        verified: true,
-        contour: true,
-        cut: true,
-        stop: true,
-        kept: true,
-        thread: false,
-    };
+    let rest = Situation { cut: true, stop: true, kept: true, ..REST };
     let zero = Length::ZERO;
     let rows = [
         ("cycle start", Command::Start),
