@@ -18,6 +18,7 @@ pub mod machine_file;
 pub mod messages;
 pub mod motors;
 pub mod operate;
+pub mod options;
 pub mod output;
 pub mod picture;
 pub mod pitch_table;

@@ -12,10 +12,10 @@
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
-use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use clap::Args;
 use handcnc::background::link::{Link, Snapshot, realtime};
 use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
 use handcnc::queue::{Producer, Queue};
@@ -25,6 +25,7 @@ use interp_core::config::Machine;
 use interp_core::train::{Event, Hash, Levels};
 use interp_core::units::{Axis, Lattice};
 
+use crate::options::Setup;
 use crate::settings::Settings;
 use crate::spindle::Turning;
 use crate::turn;
@@ -41,21 +42,22 @@ const POLL: Duration = Duration::from_micros(50);
 const UNREAD: usize = 1 << 20;
 
 /// What `serve` is asked to do.
-#[derive(Clone, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 pub struct Job {
-    /// Port on this computer; 0 for any that is free.
+    /// Port on this computer (127.0.0.1) only; 0 takes any that is free. The first line printed names it.
+    #[arg(long = "tcp", value_name = "PORT")]
     pub port: u16,
-    /// As fast as the sender lets.
+    /// Run as fast as the sender lets, not in real time; the pulses are the same.
+    #[arg(long)]
     pub fast: bool,
-    /// Machine file.
-    pub machine: Option<PathBuf>,
-    /// Parameters by name.
-    pub set: Vec<(String, String)>,
+    /// The machine.
+    #[command(flatten)]
+    pub setup: Setup,
 }
 
 /// Serves until the process is ended; the exit code when it can't.
 pub fn serve(job: &Job) -> u8 {
-    let (settings, machine) = match turn::settings(job.machine.as_deref(), &job.set) {
+    let (settings, machine) = match turn::settings(&job.setup) {
         Ok(settings) => settings,
         Err(code) => return code,
     };

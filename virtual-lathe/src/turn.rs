@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use clap::Args;
 use feature_editor::codes::{Format, Item};
 use handcnc::background::parameters::Parameters;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -14,6 +15,7 @@ use stock::{ContourError, Part, SetupError, Tool};
 use crate::examples::{EXAMPLES, Example};
 use crate::insets::Chooser;
 use crate::motors::Motors;
+use crate::options::{Programs, Setup, animation_file, picture_file};
 use crate::output::{Pending, Places};
 use crate::picture::Form;
 use crate::program::Program;
@@ -35,29 +37,30 @@ pub const UNUSABLE: u8 = 2;
 const WARNINGS_LISTED: usize = 100;
 
 /// What `turn` is asked to do.
-#[derive(Clone, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 pub struct Job {
-    /// The program; the demo without one.
+    /// Program text; `-` is standard input.
     pub file: Option<PathBuf>,
-    /// Its format; told from the text without one.
-    pub format: Option<Format>,
-    /// Machine file.
-    pub machine: Option<PathBuf>,
-    /// Parameters by name.
-    pub set: Vec<(String, String)>,
-    /// Tables of pitch errors for the control.
-    pub pitch_table: Option<PathBuf>,
-    /// Where the trace goes.
+    /// Machine, tables and format.
+    #[command(flatten)]
+    pub programs: Programs,
+    /// Write every step: time in ns, position in pulses.
+    #[arg(long, value_name = "FILE.csv")]
     pub trace: Option<PathBuf>,
-    /// Where the report goes.
+    /// Write the figures.
+    #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,
-    /// Where the picture goes.
+    /// Draw the path (SVG or PNG by the name's ending). Without any output option out/NAME.svg and .png are drawn.
+    #[arg(long, value_name = "FILE.svg|png", value_parser = picture_file)]
     pub picture: Option<PathBuf>,
-    /// Where the picture of the surface error goes.
+    /// Draw how far the cut surface is from the contour, magnified.
+    #[arg(long, value_name = "FILE.svg|png", value_parser = picture_file)]
     pub error_picture: Option<PathBuf>,
-    /// Where the picture of the motion over time goes.
+    /// Draw speed, acceleration and pulse rate over time.
+    #[arg(long, value_name = "FILE.svg|png", value_parser = picture_file)]
     pub motion_picture: Option<PathBuf>,
-    /// Where the animation goes.
+    /// Show the cut, as an animated picture.
+    #[arg(long, value_name = "FILE.gif|png", value_parser = animation_file)]
     pub animate: Option<PathBuf>,
 }
 
@@ -114,9 +117,8 @@ pub fn told(failure: Failure) -> u8 {
 ///
 /// # Errors
 /// The exit code; all errors are told.
-pub fn settings(machine: Option<&Path>, set: &[(String, String)]) -> Result<(Settings, Machine), u8> {
-    let job = Job { machine: machine.map(Into::into), set: set.to_vec(), ..Job::default() };
-    parameters(&job, None).map_err(told)
+pub fn settings(setup: &Setup) -> Result<(Settings, Machine), u8> {
+    parameters(&Programs { setup: setup.clone(), ..Programs::default() }, None).map_err(told)
 }
 
 /// A program that has run.
@@ -136,7 +138,7 @@ pub struct Finished {
 fn run(job: &Job) -> Result<(), Failure> {
     let example = EXAMPLES.first().filter(|_| job.file.is_none());
     // the demo comes with its bar, unless a machine file says what there is
-    let (settings, machine) = parameters(job, example.filter(|_| job.machine.is_none()))?;
+    let (settings, machine) = parameters(&job.programs, example.filter(|_| job.programs.setup.machine.is_none()))?;
     let program = match (&job.file, example) {
         (Some(path), _) => {
             Program::open(path).map_err(|error| Failure::Unusable(format!("{}: {error}", path.display())))?
@@ -146,7 +148,7 @@ fn run(job: &Job) -> Result<(), Failure> {
     };
     let pictures = pictures(job, &program);
     let mut places = Places::default();
-    for input in job.file.iter().chain(&job.machine).chain(&job.pitch_table) {
+    for input in job.file.iter().chain(job.programs.inputs()) {
         places.input(input);
     }
     let others = [&job.error_picture, &job.motion_picture, &job.animate].into_iter().flatten();
@@ -163,7 +165,7 @@ fn run(job: &Job) -> Result<(), Failure> {
 /// [`Failure`].
 pub fn run_example(example: &'static Example) -> Result<Finished, Failure> {
     let job = Job { animate: Some(PathBuf::new()), ..Job::default() };
-    let (settings, machine) = parameters(&job, Some(example))?;
+    let (settings, machine) = parameters(&job.programs, Some(example))?;
     perform(&example.program(), &job, &settings, &machine)
 }
 
@@ -171,7 +173,7 @@ pub fn run_example(example: &'static Example) -> Result<Finished, Failure> {
 fn perform(program: &Program, job: &Job, settings: &Settings, machine: &Machine) -> Result<Finished, Failure> {
     let parameters = &settings.parameters;
     let name = program.name();
-    let format = match job.format {
+    let format = match job.programs.format() {
         Some(format) => format,
         None => program.detect()?,
     };
@@ -273,11 +275,12 @@ fn remedy(error: &ContourError) -> &'static str {
 }
 
 /// Reads machine file and settings; all errors are told.
-fn parameters(job: &Job, example: Option<&Example>) -> Result<(Settings, Machine), Failure> {
+fn parameters(programs: &Programs, example: Option<&Example>) -> Result<(Settings, Machine), Failure> {
     let own =
         example.into_iter().flat_map(|example| example.set).map(|(name, value)| ((*name).into(), (*value).into()));
-    let set: Vec<(String, String)> = own.chain(job.set.iter().cloned()).collect();
-    Settings::read_fitted(job.machine.as_deref(), &set, job.pitch_table.as_deref()).map_err(|refusal| match refusal {
+    let set: Vec<(String, String)> = own.chain(programs.setup.set.iter().cloned()).collect();
+    let (file, pitch) = (programs.setup.machine.as_deref(), programs.pitch_table.as_deref());
+    Settings::read_fitted(file, &set, pitch).map_err(|refusal| match refusal {
         Refusal::Unreadable(message) => Failure::Unusable(message),
         Refusal::Wrong(errors) => {
             for error in &errors {

@@ -4,6 +4,7 @@
 use std::path::PathBuf;
 
 use serde_json::Value;
+use virtual_lathe::options::{Programs, Setup};
 use virtual_lathe::turn::{self, Job};
 
 /// Runs a program, the demo without one; exit code and report.
@@ -15,7 +16,8 @@ fn run(text: Option<&str>, set: &[(&str, &str)]) -> (u8, Value) {
     }
     let set = set.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
     let file = text.map(|_| program);
-    let code = turn::turn(&Job { file, set, report: Some(report.clone()), ..Job::default() });
+    let programs = Programs { setup: Setup { machine: None, set }, ..Programs::default() };
+    let code = turn::turn(&Job { file, programs, report: Some(report.clone()), ..Job::default() });
     let json = std::fs::read_to_string(report).map_or(Value::Null, |text| serde_json::from_str(&text).unwrap());
     (code, json)
 }

@@ -27,6 +27,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use feature_editor::codes::Format;
 use indicatif::ProgressBar;
 use interp_core::config::Machine;
@@ -38,6 +39,7 @@ pub use control::{Done, Failed};
 use event::{Event, What};
 use script::{Script, ScriptError};
 
+use crate::options::{Programs, picture_file};
 use crate::output::{Pending, Places};
 use crate::picture;
 use crate::settings::{Refusal, Settings};
@@ -49,23 +51,22 @@ pub const FAILED: u8 = 1;
 pub const WRONG: u8 = 2;
 
 /// What `operate` is asked to do.
-#[derive(Clone, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 pub struct Job {
-    /// The script.
+    /// The script: a line an event, SECONDS WHAT.
     pub scenario: PathBuf,
-    /// Format of the programs that it loads; told from the text without one.
-    pub format: Option<Format>,
-    /// Machine file.
-    pub machine: Option<PathBuf>,
-    /// Parameters by name.
-    pub set: Vec<(String, String)>,
-    /// Tables of pitch errors for the control.
-    pub pitch_table: Option<PathBuf>,
-    /// Where the trace goes.
+    /// Machine, tables and format.
+    #[command(flatten)]
+    pub programs: Programs,
+    /// Write every step: time in ns, position in pulses.
+    #[arg(long, value_name = "FILE.csv")]
     pub trace: Option<PathBuf>,
-    /// Where the state goes, besides standard output.
+    /// Write the final state.
+    #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,
-    /// Where the picture goes.
+    /// Draw what the tool did (SVG or PNG by the name's ending). Without any output option out/NAME.svg, .png and .csv are
+    /// written.
+    #[arg(long, value_name = "FILE.svg|png", value_parser = picture_file)]
     pub picture: Option<PathBuf>,
 }
 
@@ -129,7 +130,7 @@ pub fn perform(job: &Job, trace: Option<&Path>) -> Result<Done, Unrun> {
     let last = events.last().map_or(0, |event| event.tick);
     let bar = turn::progress(last);
     bar.set_message("operating");
-    let done = control(settings, machine, events, job.format, trace, bar.clone())?.run();
+    let done = control(settings, machine, events, job.programs.format(), trace, bar.clone())?.run();
     bar.finish_and_clear();
     Ok(done?)
 }
@@ -158,11 +159,12 @@ fn control(
 /// Parameters of the call, then those that the script sets at second 0, which describe the machine from its start; those
 /// that it sets later are tried. The events that are left, with the places of programs relative to the script's folder.
 fn prepare(job: &Job, mut events: Vec<Event>) -> Result<(Settings, Machine, Vec<Event>), Unrun> {
+    let programs = &job.programs;
     let mut settings = Settings::default();
     // a name and a value of the list
     let _ = settings.set("handwheels", "true");
     let (mut settings, mut machine) = settings
-        .read_fitted_over(job.machine.as_deref(), &job.set, job.pitch_table.as_deref())
+        .read_fitted_over(programs.setup.machine.as_deref(), &programs.setup.set, programs.pitch_table.as_deref())
         .map_err(|refusal| match refusal {
             Refusal::Unreadable(message) => Unrun::Unusable(message),
             Refusal::Wrong(errors) => Unrun::Parameters(errors),
@@ -267,7 +269,7 @@ fn outputs(job: &Job) -> Outputs {
 
 fn places(job: &Job, outputs: &Outputs) -> io::Result<()> {
     let mut places = Places::default();
-    for input in [&job.scenario].into_iter().chain(&job.machine).chain(&job.pitch_table) {
+    for input in [&job.scenario].into_iter().chain(job.programs.inputs()) {
         places.input(input);
     }
     outputs.trace.iter().chain(&outputs.report).chain(&outputs.pictures).try_for_each(|path| places.output(path))

@@ -20,6 +20,7 @@ mod track;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use interp_core::config::TICKS_PER_SECOND;
 
@@ -44,17 +45,22 @@ const BUDGET_RUNS: u32 = 2_000;
 const BUDGET_TICKS: u64 = 60_000_000;
 
 /// What `soak` is asked to do.
-#[derive(Clone, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 pub struct Job {
     /// Simulated hours.
+    #[arg(long, default_value_t = 1.0)]
     pub hours: f64,
-    /// Where chance begins.
+    /// Where chance begins: the same seed gives the same sessions.
+    #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// A scenario to run under the oracles instead.
+    /// Run this scenario under the same rules, instead.
+    #[arg(long, value_name = "FILE")]
     pub replay: Option<PathBuf>,
     /// Where failures are written.
+    #[arg(long, value_name = "FOLDER", default_value = "out/soak")]
     pub folder: PathBuf,
-    /// Go on after a failure, until so many were found.
+    /// Go on until so many failures were found.
+    #[arg(long, default_value_t = 1)]
     pub failures: u64,
 }
 
