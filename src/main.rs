@@ -31,10 +31,12 @@ mod app {
     use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
     use handcnc::background::inbox::{Inbox, LOST};
+    use handcnc::background::keeper::Keeper;
     use handcnc::background::link::{Link, Realtime};
     use handcnc::background::status::Status;
     use handcnc::foreground::alarm::{Alarm, Faults};
     use handcnc::foreground::heartbeat::Heartbeat;
+    use handcnc::foreground::kept::Record;
     use handcnc::foreground::train_queue::{Player, TrainQueue, Writer};
     use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
     use handcnc::queue::{Consumer, Producer, Queue};
@@ -43,8 +45,8 @@ mod app {
     use stm32f4xx_hal::pac::Interrupt;
 
     use crate::board::{
-        self, Bench, Board, Contact, Drives, EmergencyInput, Fall, Receiver, Sender, StepPort, StepTimer, Watchdog,
-        Width,
+        self, Bench, Board, Contact, Drives, EmergencyInput, Fall, Memory, Receiver, Sender, StepPort, StepTimer,
+        Watchdog, Width,
     };
 
     /// Bytes on their way to the link: what a sender may have under way.
@@ -53,6 +55,7 @@ mod app {
     const REALTIME: usize = 32;
 
     static STATUS: Status = Status::new();
+    static RECORD: Record = Record::new();
     static LATE: AtomicU32 = AtomicU32::new(0);
     static HUNGRY: AtomicBool = AtomicBool::new(true);
     /// The emergency input has opened since the last tick.
@@ -83,6 +86,8 @@ mod app {
         drives: Drives,
         watchdog: Watchdog,
         heartbeat: Heartbeat,
+        keeper: Keeper,
+        memory: Memory,
         bench: Bench,
         receiver: Receiver,
         inbox: Inbox<'static>,
@@ -119,9 +124,16 @@ mod app {
         let foreground = make(cx.local.foreground_place, new);
         foreground.obey(Command::FeedOverride(parameters.feed_override()));
         foreground.obey(Command::Settle(parameters.operation(&machine)));
+        let (keeper, found) = Keeper::new(&machine, &have.memory);
+        if let Some(found) = found {
+            foreground.restore(&found);
+        }
         defmt::println!("{=str}, restarted by the watchdog: {=bool}", env!("CARGO_PKG_VERSION"), have.restarted);
         if have.restarted {
             foreground.raise(Alarm::Watchdog);
+        }
+        if Memory::DOUBTFUL {
+            foreground.raise(Alarm::PowerReturned);
         }
         let link = make(cx.local.link_place, || Link::new(parameters, machine));
         link.banner(&mut sender);
@@ -141,6 +153,8 @@ mod app {
                 drives,
                 watchdog: have.watchdog,
                 heartbeat: Heartbeat::new(),
+                keeper,
+                memory: have.memory,
                 bench: have.bench,
                 receiver: have.receiver,
                 inbox,
@@ -195,10 +209,19 @@ mod app {
     }
 
     /// Makes the tick after the one being played.
-    #[task(binds = I2C3_ER, priority = 3, local = [foreground, train, width, contact, drives, watchdog, heartbeat, bench])]
+    #[task(binds = I2C3_ER, priority = 3, local = [foreground, train, width, contact, drives, watchdog, heartbeat, bench, since: u8 = 0])]
     fn interpolate(cx: interpolate::Context) {
         let interpolate::LocalResources {
-            foreground, train, width, contact, drives, watchdog, heartbeat, bench, ..
+            foreground,
+            train,
+            width,
+            contact,
+            drives,
+            watchdog,
+            heartbeat,
+            bench,
+            since,
+            ..
         } = cx.local;
         width.set(foreground.pulse_width()); // of the tick that is being played
         let faults = Faults { underruns: train.underruns(), overruns: train.overruns(), late: LATE.load(Relaxed) };
@@ -217,6 +240,7 @@ mod app {
         }
         bench.saw(&report, faults);
         STATUS.publish(&report, foreground, faults);
+        RECORD.publish(since, foreground);
         HUNGRY.store(foreground.is_hungry(), Relaxed);
         rtic::pend(Interrupt::I2C3_EV);
     }
@@ -231,9 +255,10 @@ mod app {
     }
 
     /// Talks with the sender and compiles what it sends.
-    #[task(binds = I2C3_EV, priority = 1, local = [link, sender, bytes, realtime, blocks, commands, told: Option<Alarm> = None])]
+    #[task(binds = I2C3_EV, priority = 1, local = [link, sender, bytes, realtime, blocks, commands, keeper, memory, told: Option<Alarm> = None])]
     fn edit(cx: edit::Context) {
-        let edit::LocalResources { link, sender, bytes, realtime, blocks, commands, told, .. } = cx.local;
+        let edit::LocalResources { link, sender, bytes, realtime, blocks, commands, keeper, memory, told, .. } =
+            cx.local;
         #[cfg(feature = "planted-panic")]
         board::plant();
         loop {
@@ -247,6 +272,9 @@ mod app {
             if !link.work(blocks, commands, &STATUS.snapshot(), sender) {
                 break;
             }
+        }
+        if let Some(kept) = RECORD.read() {
+            keeper.keep(&kept, memory);
         }
         let alarm = STATUS.snapshot().alarm;
         if core::mem::replace(told, alarm) != alarm {

@@ -3,6 +3,7 @@
 mod blend;
 pub mod compile;
 pub mod inbox;
+pub mod keeper;
 pub mod link;
 pub mod parameters;
 pub mod status;

@@ -6,11 +6,12 @@ use interp_core::channel::{Report, State};
 use interp_core::train::Levels;
 use stm32f4xx_hal::gpio::alt::SerialAsync as CommonPins;
 use stm32f4xx_hal::gpio::{ExtiPin, PushPull};
-use stm32f4xx_hal::pac::{DMA2, EXTI, IWDG, RCC, SYSCFG, TIM1, TIM5, USART2, tim5};
+use stm32f4xx_hal::pac::{DMA2, EXTI, IWDG, PWR, RCC, RTC, SYSCFG, TIM1, TIM5, USART2, tim5};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
+use super::backup::Memory;
 use super::pins::{Contact, Drives, EmergencyInput, StepPort};
 use super::registers::Registers;
 use super::this::TIMER_DIVIDER;
@@ -30,6 +31,8 @@ pub(crate) struct Devices<L> {
     /// Timer and DMA of falling edges.
     pub(crate) fall: (TIM1, DMA2),
     pub(crate) watchdog: IWDG,
+    /// Backup memory, and what opens it.
+    pub(crate) memory: (RTC, PWR),
     pub(crate) usart: USART2,
     /// The link's pins: transmit, receive.
     pub(crate) link: L,
@@ -48,7 +51,7 @@ where
     T: Into<<USART2 as CommonPins>::Tx<PushPull>>,
     R: Into<<USART2 as CommonPins>::Rx<PushPull>>,
 {
-    let Devices { syscfg, mut exti, timer, fall, watchdog, usart, link } = devices;
+    let Devices { syscfg, mut exti, timer, fall, watchdog, memory, usart, link } = devices;
     let mut syscfg = syscfg.constrain(rcc);
     contact.make_interrupt_source(&mut syscfg);
     contact.trigger_on_edge(&mut exti, stm32f4xx_hal::gpio::Edge::Rising);
@@ -63,6 +66,7 @@ where
         fall,
         width,
         drives,
+        memory: Memory::open(memory.0, &memory.1, rcc),
         emergency: EmergencyInput,
         contact: Contact,
         receiver,

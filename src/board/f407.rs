@@ -55,6 +55,7 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
         timer: dp.TIM5,
         fall: (dp.TIM1, dp.DMA2),
         watchdog: dp.IWDG,
+        memory: (dp.RTC, dp.PWR),
         usart: dp.USART2,
         link: (gpiod.pd5, gpiod.pd6),
     };

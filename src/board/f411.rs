@@ -54,6 +54,7 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
         timer: dp.TIM5,
         fall: (dp.TIM1, dp.DMA2),
         watchdog: dp.IWDG,
+        memory: (dp.RTC, dp.PWR),
         usart: dp.USART2,
         link: (gpioa.pa2, gpioa.pa3),
     };

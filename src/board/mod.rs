@@ -1,13 +1,15 @@
 //! Boards: the only code that knows a register.
 //!
 //! Each board is a module with the same `setup() -> Board` and the pins in its own documentation. What boards share
-//! stands beside them: `chip` and `pins` have what all real ones do alike, `fall` the falling edges, `link_port` the serial port, `fault` the
+//! stands beside them: `chip` and `pins` have what all real ones do alike, `backup` the memory that outlives a loss of power, `fall` the falling edges, `link_port` the serial port, `fault` the
 //! handlers of faults, `log` the log, which leaves by `rtt` or `host_log`. All boards use the same interrupts
 //! (a task of the app names one): TIM5 for steps, USART2 for the link, EXTI15_10 for the emergency stop, I2C3_ER for
 //! the interpolator and I2C3_EV for the background (the last two stand for no device).
 //!
 //! The only `unsafe` of the firmware is here.
 
+#[cfg(not(feature = "board-qemu"))]
+mod backup;
 mod fall;
 mod fault;
 #[cfg(feature = "board-qemu")]
@@ -52,6 +54,8 @@ compile_error!("name a board: --features board-f407, board-f411, board-f446 or b
 use handcnc::background::parameters::Parameters;
 
 #[cfg(not(feature = "board-qemu"))]
+pub(crate) use backup::Memory;
+#[cfg(not(feature = "board-qemu"))]
 pub(crate) use chip::{Bench, StepTimer, Watchdog, safe, sleep};
 pub(crate) use fall::{Fall, Width};
 pub(crate) use link_port::{Receiver, Sender};
@@ -59,7 +63,7 @@ pub(crate) use link_port::{Receiver, Sender};
 pub(crate) use pins::{Contact, Drives, EmergencyInput, StepPort};
 pub(crate) use this::setup;
 #[cfg(feature = "board-qemu")]
-pub(crate) use this::{Bench, Contact, Drives, EmergencyInput, StepPort, StepTimer, Watchdog, safe, sleep};
+pub(crate) use this::{Bench, Contact, Drives, EmergencyInput, Memory, StepPort, StepTimer, Watchdog, safe, sleep};
 
 /// Masks interrupts and switches all off: a fault's first step.
 fn off() {
@@ -87,6 +91,8 @@ pub(crate) struct Board {
     pub(crate) width: Width,
     /// Enable pins of motor drivers and spindle.
     pub(crate) drives: Drives,
+    /// What a loss of power leaves.
+    pub(crate) memory: Memory,
     /// Interrupt of the emergency stop.
     pub(crate) emergency: EmergencyInput,
     /// Level of the emergency stop.

@@ -14,6 +14,7 @@
 //! `log=FILE` for a log,
 //! `TICK:hold`, `TICK:start`, `TICK:reset`, `TICK:override=PERCENT` for a command at a tick of the cycle.
 
+use handcnc::background::keeper::{Backup, WORDS};
 use handcnc::background::parameters::Parameters;
 use handcnc::foreground::alarm::Faults;
 use handcnc::foreground::outputs::Outputs;
@@ -54,6 +55,7 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
         fall,
         width,
         drives: Drives,
+        memory: Memory,
         emergency: EmergencyInput,
         contact: Contact,
         receiver,
@@ -134,6 +136,22 @@ impl StepPort {
             self.0.shadow.odr().write(|w| w.bits(play.word() & 0xFFFF));
         }
     }
+}
+
+/// No backup memory: an emulated machine is always a new one, and where it begins is known.
+pub(crate) struct Memory;
+
+impl Memory {
+    /// See above.
+    pub(crate) const DOUBTFUL: bool = false;
+}
+
+impl Backup for Memory {
+    fn read(&self) -> [u32; WORDS] {
+        [0; WORDS]
+    }
+
+    fn write(&mut self, _: usize, _: &[u32]) {}
 }
 
 /// No drives.

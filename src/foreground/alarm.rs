@@ -61,6 +61,8 @@ pub enum Alarm {
     FollowingX,
     /// Of the carriage.
     FollowingZ,
+    /// The power was gone: what the slides did meanwhile is not known.
+    PowerReturned,
     /// The spindle stopped in a thread.
     SpindleStopped,
     /// The spindle turned round in a thread.
@@ -81,7 +83,7 @@ pub enum Alarm {
 
 impl Alarm {
     /// All alarms.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Emergency,
         Self::Underrun,
         Self::Overrun,
@@ -92,6 +94,7 @@ impl Alarm {
         Self::Homing,
         Self::FollowingX,
         Self::FollowingZ,
+        Self::PowerReturned,
         Self::SpindleStopped,
         Self::SpindleReversed,
         Self::IndexLost,
@@ -135,7 +138,13 @@ impl Alarm {
             | Self::SpindleTooFast
             | Self::SpindleTooRough
             | Self::NoWayBack => false,
-            Self::Underrun | Self::Overrun | Self::Late | Self::Watchdog | Self::FollowingX | Self::FollowingZ => true,
+            Self::Underrun
+            | Self::Overrun
+            | Self::Late
+            | Self::Watchdog
+            | Self::FollowingX
+            | Self::FollowingZ
+            | Self::PowerReturned => true,
         }
     }
 
@@ -152,6 +161,7 @@ impl Alarm {
             Self::Homing => 206,
             Self::FollowingX => 207,
             Self::FollowingZ => 208,
+            Self::PowerReturned => 209,
             Self::SpindleStopped => 210,
             Self::SpindleReversed => 211,
             Self::IndexLost => 212,
@@ -205,6 +215,7 @@ impl fmt::Display for Alarm {
             Self::Homing => "the home switch was not found",
             Self::FollowingX => "X is not where it should be",
             Self::FollowingZ => "Z is not where it should be",
+            Self::PowerReturned => "the power was gone",
             Self::SpindleStopped => "the spindle stopped in a thread",
             Self::SpindleReversed => "the spindle turned round in a thread",
             Self::IndexLost => "the spindle turns without an index pulse",

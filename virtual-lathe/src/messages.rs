@@ -13,6 +13,7 @@ pub const fn after(alarm: Alarm) -> &'static str {
     match alarm {
         Alarm::Emergency => "close the emergency input",
         Alarm::Underrun | Alarm::Overrun | Alarm::Late | Alarm::Watchdog => "this is a bug: please report the program",
+        Alarm::PowerReturned => "confirm where the tool is, or home",
         Alarm::LimitSwitchX | Alarm::LimitSwitchZ => "move off the limit switch",
         Alarm::Homing | Alarm::FollowingX | Alarm::FollowingZ => "look at the switch, the scale and the motor",
         Alarm::SpindleStopped => "let the spindle turn until the thread has ended, or lighten the cut",

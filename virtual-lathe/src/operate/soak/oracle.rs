@@ -534,7 +534,7 @@ impl Oracle {
             Alarm::LimitSwitchZ => ends(Axis::Z),
             Alarm::Homing => tick.shown.mode == Mode::Homing,
             // no board counts them here, and no scale is there
-            Alarm::Underrun | Alarm::Overrun | Alarm::Late | Alarm::Watchdog => false,
+            Alarm::Underrun | Alarm::Overrun | Alarm::Late | Alarm::Watchdog | Alarm::PowerReturned => false,
             Alarm::FollowingX | Alarm::FollowingZ => false,
             Alarm::SpindleStopped
             | Alarm::SpindleReversed
