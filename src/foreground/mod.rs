@@ -155,7 +155,7 @@ impl<'q> Foreground<'q> {
     pub fn act(&mut self, act: Act) {
         match act {
             Act::Command(command) => self.obey(command),
-            Act::Wheels(..) => act.turn(&mut self.desk.inputs),
+            Act::Wheels(..) | Act::Spindle(_) => act.read(&mut self.desk.inputs),
         }
     }
 
