@@ -89,6 +89,17 @@ const COMPENSATED: [&str; 14] = [
     "feed_override=90",
 ];
 
+/// The same with a spindle of 996 turns a minute.
+const SPINDLE: [&str; 7] = [
+    "x.pulse_nm=1000",
+    "z.pulse_nm=1000",
+    "x.max_feed=6000",
+    "z.max_feed=6000",
+    "x.min_space_ns=4500",
+    "z.min_space_ns=4500",
+    "0:spindle=68*5000",
+];
+
 const SINE: [&str; 7] = [
     "x.pulse_nm=1000",
     "z.pulse_nm=1000",
@@ -124,7 +135,7 @@ const EVERYTHING: [&str; 21] = [
     "200:override=97",
 ];
 
-const CASES: [Case; 12] = [
+const CASES: [Case; 14] = [
     Case("line 4:3, X at 80 kHz", "G21 G90\nG4 P0.05\nG1 X40 Z30 F6000\nM2\n", &PULSES),
     Case("arc, R 10 mm, 25 kHz", "G21 G90\nG4 P0.05\nG3 X-10 Z-10 I-10 K0 F1500\nM2\n", &PULSES),
     // its centre lies between the lattice lines, so the walk needs 64 bits
@@ -139,6 +150,8 @@ const CASES: [Case; 12] = [
         &COMPENSATED,
     ),
     Case("line 4:3, sine law", "G21 G90\nG4 P0.05\nG1 X40 Z30 F6000\nM2\n", &SINE),
+    Case("line 4:3, a feed a turn, X at 80 kHz", "G21 G90\nM3 S1000\nG4 P0.05\nG95 G1 X40 Z30 F6\nM2\n", &SPINDLE),
+    Case("thread, lead 4.8 mm, 80 kHz", "G21 G90\nM3 S1000\nG4 P0.05\nG33 Z30 K4.8\nM2\n", &SPINDLE),
     Case("line 1:1, everything, 2 x 100 kHz", "G21 G90\nG4 P0.05\nG1 X60 Z60 F8485\nM2\n", &EVERYTHING),
     Case("arc, R 50 mm, everything, 141 kHz", "G21 G90\nG4 P0.05\nG3 X-50 Z-50 I-50 K0 F8485\nM2\n", &EVERYTHING),
     Case("arc, R 10 mm, sine law", "G21 G90\nG4 P0.05\nG3 X-10 Z-10 I-10 K0 F1500\nM2\n", &SINE),
@@ -175,7 +188,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut cases = Map::new();
     for (name, counts) in &counted {
         // the two cases of one curve with the fewest and the most steps a tick, under the linear law and uncompensated
-        let plain = |name: &str| !["law", "compensated", "everything"].iter().any(|other| name.contains(other));
+        let plain = |name: &str| !["law", "compensated", "everything", "turn"].iter().any(|other| name.contains(other));
         let kin = counted.iter().filter(|(other, _)| plain(other) && other.split(' ').next() == name.split(' ').next());
         let per_step = slope(kin.map(|(_, counts)| counts));
         cases.insert((*name).into(), figures(counts, per_step));
