@@ -4,6 +4,7 @@ mod blend;
 pub mod compile;
 pub mod inbox;
 pub mod keeper;
+pub mod keys;
 pub mod link;
 pub mod parameters;
 pub mod status;

@@ -20,6 +20,15 @@ pub struct AxisSettings {
     pub following: i32,
 }
 
+/// Which switches the machine has, where a board reads them.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Fitted {
+    /// A switch tells whether the guard is closed.
+    pub guard: bool,
+    /// Limit switches at the axes' ends.
+    pub ends: bool,
+}
+
 /// Figures of operation.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
@@ -31,14 +40,17 @@ pub struct Settings {
     pub safe: Speed,
     /// Feed of a dry run.
     pub dry: Speed,
+    /// Switches that a board reads.
+    pub fitted: Fitted,
 }
 
 impl Settings {
     /// No limits; wheels on.
     pub const NONE: Self = {
         let far = (i32::MIN >> 1, i32::MAX >> 1);
+        let fitted = Fitted { guard: true, ends: true };
         let axis =
             AxisSettings { limits: far, bounds: far, home_plus: true, home_speed: 1 << 12, home: 0, following: 0 };
-        Self { axes: PerAxis { x: axis, z: axis }, wheels: true, safe: 1 << 12, dry: 1 << 12 }
+        Self { axes: PerAxis { x: axis, z: axis }, wheels: true, safe: 1 << 12, dry: 1 << 12, fitted }
     };
 }

@@ -120,7 +120,9 @@ pub(super) mod index {
     pub(in super::super) const AXIS_OPERATION: usize = 8;
     pub(in super::super) const ENCODER_COUNTS: usize = 67;
     pub(in super::super) const THREAD_RETRACT: usize = 68;
-    pub(in super::super) const COUNT: usize = 69;
+    pub(in super::super) const GUARD_SWITCH: usize = 69;
+    pub(in super::super) const LIMIT_SWITCHES: usize = 70;
+    pub(in super::super) const COUNT: usize = 71;
 }
 
 /// Methods that this build has, in the order of [`Method::ALL`].
@@ -231,4 +233,6 @@ pub static DEFINITIONS: [Definition; index::COUNT] = [
         "2",
         "how far a hold pulls X out of a thread; below 0 inward; 0: it waits",
     ),
+    definition("guard_switch", "", Kind::Switch, "true", "boards: a closed contact tells that the guard is closed"),
+    definition("limit_switches", "", Kind::Switch, "false", "boards: limit switches, closed until they are met"),
 ];

@@ -250,6 +250,8 @@ mod tests {
             (index::MAX_JERK, "max_jerk"),
             (index::ENCODER_COUNTS, "spindle.encoder_counts"),
             (index::THREAD_RETRACT, "thread.retract_mm"),
+            (index::GUARD_SWITCH, "guard_switch"),
+            (index::LIMIT_SWITCHES, "limit_switches"),
         ] {
             assert_eq!(DEFINITIONS[at].name, name);
         }

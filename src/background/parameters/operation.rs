@@ -7,7 +7,7 @@ use interp_core::units::{Axis, Feedrate, Length, PulseSize};
 use super::definitions::index;
 use super::{Parameters, Value};
 use crate::foreground::inputs::PerAxis;
-use crate::foreground::settings::{AxisSettings, Settings};
+use crate::foreground::settings::{AxisSettings, Fitted, Settings};
 
 impl Parameters {
     /// How the machine is operated.
@@ -35,6 +35,7 @@ impl Parameters {
             wheels: self.switch(index::HANDWHEELS),
             safe: speed_of(self.feed(index::SAFE_FEED)),
             dry: speed_of(self.feed(index::DRY_FEED)),
+            fitted: Fitted { guard: self.switch(index::GUARD_SWITCH), ends: self.switch(index::LIMIT_SWITCHES) },
         }
     }
 

@@ -10,6 +10,7 @@
 mod coordinates;
 mod drives;
 mod intervention;
+mod panel;
 mod power;
 mod state;
 mod threads;

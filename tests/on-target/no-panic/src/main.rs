@@ -11,12 +11,14 @@ mod image {
     use core::hint::black_box;
 
     use handcnc::background::inbox::Inbox;
+    use handcnc::background::keys::Pressed;
     use handcnc::background::link::{Link, Realtime};
     use handcnc::background::parameters::Parameters;
     use handcnc::background::status::Status;
     use handcnc::foreground::alarm::{Alarm, Faults};
     use handcnc::foreground::heartbeat::Heartbeat;
     use handcnc::foreground::inputs::Inputs;
+    use handcnc::foreground::panel::{Contact, Panel, Turned, Wiring};
     use handcnc::foreground::rehearsal::Rehearsal;
     use handcnc::foreground::train_queue::TrainQueue;
     use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
@@ -71,6 +73,8 @@ mod image {
         let (mut train, mut player) = queue.split();
         foreground.raise(black_box(Alarm::Watchdog));
         let mut heartbeat = Heartbeat::new();
+        let wiring = Contact::ALL.into_iter().fold(Wiring::NONE, |wiring, contact| wiring.with(contact, black_box(1)));
+        let (mut panel, pressed) = (Panel::new(wiring), Pressed::new());
         let mut inbox = Inbox::new(bytes_in, realtime_in);
         loop {
             inbox.take(black_box(0));
@@ -85,6 +89,8 @@ mod image {
             foreground.watch(faults, black_box(false));
             rehearsal.due(foreground.state(), &mut |act| foreground.act(act));
             foreground.read(&black_box(Inputs::NONE));
+            pressed.mark(panel.serve(black_box(0), &black_box(Turned::default()), &mut foreground));
+            black_box((pressed.take(), panel.asks()));
             black_box((foreground.shown(), foreground.refused(), foreground.kept()));
             let report = foreground.tick(&mut train);
             train.publish();
