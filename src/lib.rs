@@ -11,3 +11,8 @@
 pub mod background;
 pub mod foreground;
 pub mod queue;
+
+// what a board writes into registers, against a model of them
+#[cfg(test)]
+#[path = "board/quadrature.rs"]
+mod quadrature;

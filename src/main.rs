@@ -32,6 +32,7 @@ mod app {
 
     use handcnc::background::inbox::{Inbox, LOST};
     use handcnc::background::keeper::Keeper;
+    use handcnc::background::keys::Pressed;
     use handcnc::background::link::{Link, Realtime};
     use handcnc::background::status::Status;
     use handcnc::foreground::alarm::{Alarm, Faults};
@@ -45,8 +46,8 @@ mod app {
     use stm32f4xx_hal::pac::Interrupt;
 
     use crate::board::{
-        self, Bench, Board, Contact, Drives, EmergencyInput, Fall, Memory, Receiver, Sender, StepPort, StepTimer,
-        Watchdog, Width,
+        self, Bench, Board, Contact, Controls, Drives, EmergencyInput, Fall, Memory, Receiver, Sender, StepPort,
+        StepTimer, Teller, Watchdog, Width,
     };
 
     /// Bytes on their way to the link: what a sender may have under way.
@@ -58,6 +59,7 @@ mod app {
     static RECORD: Record = Record::new();
     static LATE: AtomicU32 = AtomicU32::new(0);
     static HUNGRY: AtomicBool = AtomicBool::new(true);
+    static PRESSED: Pressed = Pressed::new();
     /// The emergency input has opened since the last tick.
     static STRUCK: AtomicBool = AtomicBool::new(false);
     /// The background has run since the last tick.
@@ -83,6 +85,7 @@ mod app {
         train: Writer<'static>,
         width: Width,
         contact: Contact,
+        controls: Controls,
         drives: Drives,
         watchdog: Watchdog,
         heartbeat: Heartbeat,
@@ -150,6 +153,7 @@ mod app {
                 train,
                 width: have.width,
                 contact: have.contact,
+                controls: have.controls,
                 drives,
                 watchdog: have.watchdog,
                 heartbeat: Heartbeat::new(),
@@ -209,13 +213,14 @@ mod app {
     }
 
     /// Makes the tick after the one being played.
-    #[task(binds = I2C3_ER, priority = 3, local = [foreground, train, width, contact, drives, watchdog, heartbeat, bench, since: u8 = 0])]
+    #[task(binds = I2C3_ER, priority = 3, local = [foreground, train, width, contact, controls, drives, watchdog, heartbeat, bench, since: u8 = 0])]
     fn interpolate(cx: interpolate::Context) {
         let interpolate::LocalResources {
             foreground,
             train,
             width,
             contact,
+            controls,
             drives,
             watchdog,
             heartbeat,
@@ -224,6 +229,7 @@ mod app {
             ..
         } = cx.local;
         width.set(foreground.pulse_width()); // of the tick that is being played
+        PRESSED.mark(controls.read(foreground));
         let faults = Faults { underruns: train.underruns(), overruns: train.overruns(), late: LATE.load(Relaxed) };
         foreground.watch(faults, taken(&STRUCK) || contact.is_open());
         bench.due(foreground.state(), &mut |act| foreground.act(act));
@@ -255,10 +261,11 @@ mod app {
     }
 
     /// Talks with the sender and compiles what it sends.
-    #[task(binds = I2C3_EV, priority = 1, local = [link, sender, bytes, realtime, blocks, commands, keeper, memory, told: Option<Alarm> = None])]
+    #[task(binds = I2C3_EV, priority = 1, local = [link, sender, bytes, realtime, blocks, commands, keeper, memory, told: Option<Alarm> = None, teller: Teller = Teller::new()])]
     fn edit(cx: edit::Context) {
-        let edit::LocalResources { link, sender, bytes, realtime, blocks, commands, keeper, memory, told, .. } =
-            cx.local;
+        let edit::LocalResources {
+            link, sender, bytes, realtime, blocks, commands, keeper, memory, told, teller, ..
+        } = cx.local;
         #[cfg(feature = "planted-panic")]
         board::plant();
         loop {
@@ -266,7 +273,7 @@ mod app {
             while let Some(byte) = bytes.dequeue() {
                 if byte == LOST { link.damaged() } else { link.receive(byte) }
             }
-            while let Some(what) = realtime.dequeue() {
+            while let Some(what) = realtime.dequeue().or_else(|| PRESSED.take()) {
                 link.realtime(what, commands, &STATUS.snapshot(), sender);
             }
             if !link.work(blocks, commands, &STATUS.snapshot(), sender) {
@@ -280,6 +287,7 @@ mod app {
         if core::mem::replace(told, alarm) != alarm {
             defmt::error!("alarm {=u8}", alarm.map_or(0, Alarm::number));
         }
+        teller.tell();
     }
 
     /// Sleeps.

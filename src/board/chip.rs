@@ -12,6 +12,7 @@ use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 use super::backup::Memory;
+use super::controls::Controls;
 use super::pins::{Contact, Drives, EmergencyInput, StepPort};
 use super::registers::Registers;
 use super::this::TIMER_DIVIDER;
@@ -36,6 +37,8 @@ pub(crate) struct Devices<L> {
     pub(crate) usart: USART2,
     /// The link's pins: transmit, receive.
     pub(crate) link: L,
+    /// What the operator has.
+    pub(crate) controls: Controls,
 }
 
 /// Sets up what the boards have in common. `restarted`: see [`was_restarted`].
@@ -51,7 +54,7 @@ where
     T: Into<<USART2 as CommonPins>::Tx<PushPull>>,
     R: Into<<USART2 as CommonPins>::Rx<PushPull>>,
 {
-    let Devices { syscfg, mut exti, timer, fall, watchdog, memory, usart, link } = devices;
+    let Devices { syscfg, mut exti, timer, fall, watchdog, memory, usart, link, controls } = devices;
     let mut syscfg = syscfg.constrain(rcc);
     contact.make_interrupt_source(&mut syscfg);
     contact.trigger_on_edge(&mut exti, stm32f4xx_hal::gpio::Edge::Rising);
@@ -69,6 +72,7 @@ where
         memory: Memory::open(memory.0, &memory.1, rcc),
         emergency: EmergencyInput,
         contact: Contact,
+        controls,
         receiver,
         sender,
         watchdog: Watchdog::start(watchdog),
@@ -179,7 +183,7 @@ pub(crate) fn safe() -> ! {
 pub(crate) struct Bench;
 
 impl Bench {
-    /// What the operator does now: nothing that the board reads yet.
+    /// Nothing is rehearsed: see [`Controls`].
     #[inline]
     pub(crate) fn due(&mut self, _: State, _: &mut impl FnMut(Act)) {}
 

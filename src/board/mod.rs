@@ -1,7 +1,8 @@
 //! Boards: the only code that knows a register.
 //!
 //! Each board is a module with the same `setup() -> Board` and the pins in its own documentation. What boards share
-//! stands beside them: `chip` and `pins` have what all real ones do alike, `backup` the memory that outlives a loss of power, `fall` the falling edges, `link_port` the serial port, `fault` the
+//! stands beside them: `chip` and `pins` have what all real ones do alike, `controls` and `quadrature` what they read of
+//! the operator, `backup` the memory that outlives a loss of power, `fall` the falling edges, `link_port` the serial port, `fault` the
 //! handlers of faults, `log` the log, which leaves by `rtt` or `host_log`. All boards use the same interrupts
 //! (a task of the app names one): TIM5 for steps, USART2 for the link, EXTI15_10 for the emergency stop, I2C3_ER for
 //! the interpolator and I2C3_EV for the background (the last two stand for no device).
@@ -19,6 +20,8 @@ mod log;
 
 #[cfg(not(feature = "board-qemu"))]
 mod chip;
+#[cfg(not(feature = "board-qemu"))]
+mod controls;
 #[cfg(feature = "board-f407")]
 mod f407;
 #[cfg(feature = "board-f411")]
@@ -29,6 +32,8 @@ mod f446;
 mod pins;
 #[cfg(feature = "board-qemu")]
 mod qemu;
+#[cfg(not(feature = "board-qemu"))]
+mod quadrature;
 mod registers;
 #[cfg(not(feature = "board-qemu"))]
 mod rtt;
@@ -57,13 +62,17 @@ use handcnc::background::parameters::Parameters;
 pub(crate) use backup::Memory;
 #[cfg(not(feature = "board-qemu"))]
 pub(crate) use chip::{Bench, StepTimer, Watchdog, safe, sleep};
+#[cfg(not(feature = "board-qemu"))]
+pub(crate) use controls::{Controls, Teller};
 pub(crate) use fall::{Fall, Width};
 pub(crate) use link_port::{Receiver, Sender};
 #[cfg(not(feature = "board-qemu"))]
 pub(crate) use pins::{Contact, Drives, EmergencyInput, StepPort};
 pub(crate) use this::setup;
 #[cfg(feature = "board-qemu")]
-pub(crate) use this::{Bench, Contact, Drives, EmergencyInput, Memory, StepPort, StepTimer, Watchdog, safe, sleep};
+pub(crate) use this::{
+    Bench, Contact, Controls, Drives, EmergencyInput, Memory, StepPort, StepTimer, Teller, Watchdog, safe, sleep,
+};
 
 /// Masks interrupts and switches all off: a fault's first step.
 fn off() {
@@ -97,6 +106,8 @@ pub(crate) struct Board {
     pub(crate) emergency: EmergencyInput,
     /// Level of the emergency stop.
     pub(crate) contact: Contact,
+    /// Wheels, spindle, panel.
+    pub(crate) controls: Controls,
     /// The link's bytes in.
     pub(crate) receiver: Receiver,
     /// The link's bytes out.

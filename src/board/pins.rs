@@ -29,7 +29,7 @@ impl<const P: char, const N: u8, M> Place for Pin<P, N, M> {
 
 /// Registers of a pin's port.
 #[inline]
-fn registers<P: Place>() -> &'static RegisterBlock {
+pub(super) fn registers<P: Place>() -> &'static RegisterBlock {
     let port = match P::PORT {
         'A' => pac::GPIOA::ptr(),
         'B' => pac::GPIOB::ptr().cast(),

@@ -16,8 +16,10 @@
 
 use handcnc::background::keeper::{Backup, WORDS};
 use handcnc::background::parameters::Parameters;
+use handcnc::foreground::Foreground;
 use handcnc::foreground::alarm::Faults;
 use handcnc::foreground::outputs::Outputs;
+use handcnc::foreground::panel::Keys;
 use handcnc::foreground::rehearsal::{Act, Rehearsal};
 use handcnc::foreground::train_queue::Play;
 use interp_core::channel::{Report, State};
@@ -58,6 +60,7 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
         memory: Memory,
         emergency: EmergencyInput,
         contact: Contact,
+        controls: Controls,
         receiver,
         sender,
         watchdog: Watchdog,
@@ -182,6 +185,31 @@ impl Contact {
     pub(crate) const fn is_open(&self) -> bool {
         false
     }
+}
+
+/// No panel: an operator is [rehearsed](Bench).
+pub(crate) struct Controls;
+
+impl Controls {
+    /// Nothing to read.
+    #[inline]
+    pub(crate) fn read(&mut self, _: &mut Foreground<'_>) -> Keys {
+        Keys::default()
+    }
+}
+
+/// Nothing to tell.
+pub(crate) struct Teller;
+
+impl Teller {
+    /// Has told nothing.
+    pub(crate) const fn new() -> Self {
+        Self
+    }
+
+    /// Tells nothing.
+    #[inline]
+    pub(crate) fn tell(&mut self) {}
 }
 
 /// No emergency input.
