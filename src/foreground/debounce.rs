@@ -44,7 +44,8 @@ impl Debounced {
         let carry = ones & twos;
         let eight = carry & fours & differ;
         let (ones, twos, fours) = (!ones & differ, (ones ^ twos) & differ, (fours ^ carry) & differ);
-        let three = ones & twos & !fours;
+        // one that counts as open is counted to three only
+        let three = ones & twos;
         let change = self.settled & eight | !self.settled & three;
         self.settled ^= change;
         self.ticks = [ones & !change, twos & !change, fours & !change];

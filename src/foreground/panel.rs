@@ -9,7 +9,7 @@
 //! At power-on a key or a lever counts as held, and the guard as open, until it is read otherwise: a key that is stuck starts
 //! nothing.
 
-use super::debounce::Debounced;
+use super::debounce::{Debounced, OFF};
 use super::inputs::{Ends, Inputs, Joystick, PerAxis};
 use super::mode::Mode;
 use super::settings::Fitted;
@@ -100,7 +100,8 @@ pub struct Turned {
     pub spindle: Reading,
 }
 
-/// Keys that went down in a tick and that the background has to know of, too.
+/// Keys that went down in a tick and that the background has to know of, too. A guard that is opened or closed is a hold
+/// for it: what waits in the background begins only when somebody asks for it once more, never because a guard was closed.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Keys {
     /// Cycle start.
@@ -158,6 +159,10 @@ pub struct Panel {
     asks: u16,
     /// The readings, but for what counts.
     inputs: Inputs,
+    /// Ticks until all contacts have been read since power-on.
+    unread: u32,
+    /// The background knows that the guard is open.
+    told: bool,
 }
 
 impl Panel {
@@ -175,6 +180,8 @@ impl Panel {
             fitted,
             asks,
             inputs: readings(asks, fitted),
+            unread: OFF,
+            told: false,
         }
     }
 
@@ -187,6 +194,11 @@ impl Panel {
         let mut keys = Keys::default();
         if word != self.word || fitted != self.fitted {
             keys = self.changed(word, fitted, foreground);
+        }
+        self.unread = self.unread.saturating_sub(1);
+        if self.inputs.guard != self.told && self.unread == 0 {
+            self.told = self.inputs.guard;
+            keys.hold = true;
         }
         let mut inputs = self.inputs;
         inputs.wheels = turned.wheels;

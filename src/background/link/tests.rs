@@ -7,6 +7,7 @@ mod blends;
 mod commands;
 mod hostile;
 mod lines;
+mod panel;
 mod realtime_bytes;
 mod streams;
 

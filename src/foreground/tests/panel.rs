@@ -96,11 +96,11 @@ fn all_sets_of_contacts_read_as_what_each_says() {
 #[test]
 fn pins_without_a_wire_ask_for_nothing_but_the_guard() {
     let (mut bench, mut panel) = (Bench::with(&[]), panel());
-    let mut keys = Vec::new();
-    for _ in 0..20 {
-        keys.push(panel.serve(u32::MAX, &NOTHING, &mut bench.foreground));
+    for tick in 1..=20 {
+        // once it is known that the guard is open, the background is told
+        let expected = Keys { hold: tick == 8, ..Keys::default() };
+        assert_eq!(panel.serve(u32::MAX, &NOTHING, &mut bench.foreground), expected);
     }
-    assert!(keys.iter().all(|keys| *keys == Keys::default()));
     let nothing = Inputs { spindle: Some(Reading::default()), ..Inputs::NONE };
     assert_eq!(bench.foreground.desk.inputs, Inputs { guard: true, ..nothing });
     assert_eq!((bench.ask(Command::Start), bench.refused()), (Err(Refusal::GuardOpen), None));
@@ -110,6 +110,17 @@ fn pins_without_a_wire_ask_for_nothing_but_the_guard() {
     bench.ask(Command::Settle(settings)).unwrap();
     panel.serve(u32::MAX, &NOTHING, &mut bench.foreground);
     assert_eq!(bench.foreground.desk.inputs, nothing);
+}
+
+#[test]
+fn the_background_holds_what_waits_whenever_the_guard_opens_or_closes() {
+    let (mut bench, mut panel) = at_rest(&[]);
+    let holds = |bench: &mut Bench, panel: &mut Panel, asking: &[Contact]| -> Vec<u32> {
+        (1..=20).filter(|_| serve(bench, panel, asking, 1) == Keys { hold: true, ..Keys::default() }).collect()
+    };
+    assert_eq!(holds(&mut bench, &mut panel, &[]), []);
+    assert_eq!(holds(&mut bench, &mut panel, &[Contact::Guard]), [3]);
+    assert_eq!(holds(&mut bench, &mut panel, &[]), [8]);
 }
 
 #[test]
