@@ -20,7 +20,7 @@
 //!
 //! All inputs are pulled up. With 48 pins and without TIM8 there is no timer for a contour wheel (the wheel of Z is one
 //! while a contour is followed) and there are no pins for reset, threading lever and the limit switches at minus, which
-//! never ask for anything: the link resets, soft limits guard the ends.
+//! never ask for anything: the link resets, soft limits guard the ends, and home is at plus.
 //!
 //! All step pins bear 5 V (PA0 and PB5 would not: DS10314 rev 7, table 8). LED PC13, crystal PC14 and PC15, USB PA11 and
 //! PA12, SWD PA13 and PA14, and PB2, which is pulled down, stay free.
