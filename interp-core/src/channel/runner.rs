@@ -58,7 +58,12 @@ impl<O: Train> Sink<'_, O> {
     #[inline(always)]
     fn row(&mut self, times: &mut Times, count: u32, strides: &Strides, turns: &mut impl Turns) -> Made {
         let live = self.superposed.is_live();
-        let count = if live { self.superposed.room(times, count, strides, self.shaper, self.out) } else { count };
+        let along;
+        let (mut count, mut strides) = (count, strides);
+        if live {
+            (count, along) = self.superposed.room(times, count, strides, turns, self.shaper, self.out);
+            strides = &along;
+        }
         if count == 0 {
             return Made { steps: 0, diagonals: 0 };
         }

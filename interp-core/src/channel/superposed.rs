@@ -10,13 +10,14 @@
 //! the other way, the program's or an added one, then cancels it, and neither is made. A second one the same way shows
 //! that the axis does turn: it is made, and the one still owed an eighth of a tick later, so that a motor that has stood is
 //! not asked for two pulses at once. So does the time, after [`PATIENCE`] ticks. So a motor is at most one
-//! pulse behind, and an axis that moves on under a compensation against its motion never turns round.
+//! pulse behind, and an axis that moves on under a compensation against its motion never turns round. What touches no
+//! pulse that is owed goes on in rows: the steps of the other axis alone, too.
 //!
 //! A tick without such pulses knows nothing of all this.
 
 use crate::config::TICK_CLOCKS;
 use crate::curve::Step;
-use crate::curve::strides::Strides;
+use crate::curve::strides::{Strides, Turns};
 use crate::shaper::Shaper;
 use crate::times::{FRACTION, Times};
 use crate::train::Train;
@@ -150,10 +151,26 @@ impl Superposed {
         self.live
     }
 
-    /// How many of `count` steps of the program, due at `times`, come before anything is added and touch nothing that is
-    /// owed: those may be made past it. What is due before the first of them is made here.
-    #[cold]
+    /// How many of `count` steps of the program, due at `times`, are made past it in a row, and as steps of which kinds: up to
+    /// the next pulse that is added and the next step that moves an axis which owes one. What is due before the first of them
+    /// is made here.
+    #[inline]
     pub fn room(
+        &mut self,
+        times: &Times,
+        count: u32,
+        strides: &Strides,
+        turns: &impl Turns,
+        shaper: &mut Shaper,
+        out: &mut impl Train,
+    ) -> (u32, Strides) {
+        let room = self.room_before(times, count, strides, shaper, out);
+        if room > 0 && self.waits() { (turns.straight(room), strides.straight()) } else { (room, *strides) }
+    }
+
+    /// The same, but for diagonal steps that move an axis which owes a pulse.
+    #[cold]
+    fn room_before(
         &mut self,
         times: &Times,
         count: u32,
@@ -165,19 +182,29 @@ impl Superposed {
             return 0;
         }
         let first = times.time >> FRACTION;
-        if self.next().is_some_and(|next| next >> FRACTION <= first) {
+        let among = self.next().is_some_and(|next| next >> FRACTION <= first);
+        if among {
             self.until(first, shaper, out);
-            // a step that would turn an axis round again is offered to what was added
-            if !shaper.faces(strides) {
-                return 0;
-            }
         }
-        if self.x.owed != 0 || self.z.owed != 0 {
+        let waits = self.waits();
+        let owes = |added: &Added, axis: Axis| added.owed != 0 && strides.always_moves(axis);
+        if owes(&self.x, Axis::X) || owes(&self.z, Axis::Z) {
+            return 0;
+        }
+        // a step that would turn an axis round again is offered to what was added
+        if among && !waits && !shaper.faces(strides) || waits && !shaper.faces(&strides.straight()) {
             return 0;
         }
         let Some(next) = self.next() else { return count };
+        // of two in one clock the added one comes first
+        let next = next >> FRACTION << FRACTION;
         let Some(before) = next.checked_sub(times.time).and_then(|room| room.checked_sub(1)) else { return 0 };
         before.checked_div(times.spacing).map_or(0, |more| more.saturating_add(1)).min(count)
+    }
+
+    /// Whether a pulse is owed.
+    const fn waits(&self) -> bool {
+        self.x.owed != 0 || self.z.owed != 0
     }
 
     /// When the next one is due.
@@ -203,7 +230,7 @@ impl Superposed {
         let patience = if moves { PATIENCE } else { 0 };
         let (x, z) = (self.x.patience(patience), self.z.patience(patience));
         self.make(LATE, [x, z], Step { x: 0, z: 0 }, shaper, out);
-        self.live = self.x.owed != 0 || self.z.owed != 0;
+        self.live = self.waits();
     }
 
     /// Makes what is due until `clock`.
@@ -254,3 +281,6 @@ impl Default for Superposed {
         Self::new()
     }
 }
+
+#[cfg(test)]
+mod tests;

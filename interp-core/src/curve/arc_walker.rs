@@ -519,6 +519,17 @@ impl<W: Word> Turns for ArcRow<W> {
         let count = self.minor_rise.times_from(self.before.1, self.minor_curve);
         Turned { count, last: self.turned.times_from(self.before.0, self.major_curve) }
     }
+
+    #[inline(never)]
+    fn straight(&self, most: u32) -> u32 {
+        let (mut decision, mut rise, mut steps) = (self.decision, self.major_rise, 0_u32);
+        while steps < most && !decision.is_reached() {
+            decision = decision.plus(rise);
+            rise = rise.plus(self.major_curve);
+            steps = steps.wrapping_add(1);
+        }
+        steps
+    }
 }
 
 impl<W: Word> ArcRow<W> {

@@ -115,6 +115,12 @@ impl Turns for LineRow {
         let since = self.remainder.checked_div(self.rise).unwrap_or(0);
         Turned { count: self.turned, last: steps.wrapping_sub(1).wrapping_sub(since) }
     }
+
+    #[inline]
+    fn straight(&self, most: u32) -> u32 {
+        let room = self.turn.wrapping_sub(1).wrapping_sub(self.remainder);
+        room.checked_div(self.rise).unwrap_or(most).min(most)
+    }
 }
 
 /// Walks a [`Line`].

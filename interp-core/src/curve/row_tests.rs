@@ -11,11 +11,15 @@ use proptest::prelude::*;
 /// Asks for so many steps, and compares what the row says of them; the diagonal ones.
 fn ask(row: &mut impl Turns, count: u32) -> u32 {
     let (mut turned, asked) = (Turned::default(), count.min(2047));
+    let (most, mut straight) = (asked / 2, None);
+    let said = row.straight(most);
     for number in 0..asked {
         if row.turns() {
+            straight = straight.or(Some(number));
             turned = Turned { count: turned.count + 1, last: number };
         }
     }
+    assert_eq!(said, straight.unwrap_or(most).min(most));
     let said = row.turned(asked);
     assert_eq!(said.count, turned.count);
     assert!(turned.count == 0 || said == turned, "{said:?} {turned:?}");

@@ -24,6 +24,8 @@ pub trait Turns {
     fn turns(&mut self) -> bool;
     /// What turned of the `steps` steps asked so far, below 2^11.
     fn turned(&self, steps: u32) -> Turned;
+    /// How many steps are straight before the next diagonal one, at most `most`; asks for none.
+    fn straight(&self, most: u32) -> u32;
 }
 
 /// A straight step moves the major axis, a diagonal one both.
@@ -53,6 +55,24 @@ impl Strides {
             directions: Levels::LOW.with_plus(Axis::X, diagonal.x != 0).with_plus(Axis::Z, diagonal.z != 0),
             plus: Levels::LOW.with_plus(Axis::X, diagonal.x > 0).with_plus(Axis::Z, diagonal.z > 0),
         }
+    }
+
+    /// The straight kind alone: what the other axis faces is nothing to it.
+    pub(crate) const fn straight(&self) -> Self {
+        let [straight, _] = self.raised;
+        // a direction's bit is the one above its step's
+        let moves = straight.bits() << 1;
+        Self {
+            directions: Levels::from_bits(self.directions.bits() & moves),
+            plus: Levels::from_bits(self.plus.bits() & moves),
+            ..*self
+        }
+    }
+
+    /// Whether every step moves an axis.
+    pub(crate) const fn always_moves(&self, axis: Axis) -> bool {
+        let [straight, _] = self.raised;
+        straight.step(axis)
     }
 
     /// One step.
