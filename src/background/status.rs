@@ -20,7 +20,7 @@ impl Status {
 
     /// Publishes what a tick made. From the interpolator only.
     pub fn publish(&self, report: &Report, foreground: &Foreground<'_>, faults: Faults) {
-        let position = foreground.position();
+        let position = foreground.overseen();
         self.0.publish(|[state, x, z, speed, line, feed_override, underruns, alarm]| {
             state.store(state_word(report.state), Relaxed);
             x.store(position.x.cast_unsigned(), Relaxed);

@@ -33,14 +33,12 @@ struct Loop {
 #[derive(Copy, Clone, Debug)]
 pub(super) struct ClosedLoop {
     loops: PerAxis<Loop>,
-    /// Where the axes were to be at the end of the last two ticks.
-    places: [Lattice; 2],
 }
 
 impl ClosedLoop {
     pub(super) const fn new() -> Self {
         const OPEN: Loop = Loop { zero: None, error: 0, waited: 0 };
-        Self { loops: PerAxis { x: OPEN, z: OPEN }, places: [Lattice { x: 0, z: 0 }; 2] }
+        Self { loops: PerAxis { x: OPEN, z: OPEN } }
     }
 
     /// The axis's place is made known anew.
@@ -48,14 +46,8 @@ impl ClosedLoop {
         *self.loops.of_mut(axis) = Loop { zero: None, error: 0, waited: 0 };
     }
 
-    /// The axes are to be at `place` at the end of the tick just made.
-    pub(super) const fn made(&mut self, place: Lattice) {
-        self.places = [self.places[1], place];
-    }
-
-    /// Takes a reading, nm: the error, nm, and a pulse to correct it.
-    fn read(&mut self, axis: Axis, reading: i32, pulse: PulseSize) -> (i64, i32) {
-        let [played, _] = self.places;
+    /// Takes a reading, nm, of an axis that was to be at `played`: the error, nm, and a pulse to correct it.
+    fn read(&mut self, axis: Axis, reading: i32, played: Lattice, pulse: PulseSize) -> (i64, i32) {
         let nm = i64::from(part(played, axis)).wrapping_mul(i64::from(pulse.numerator()));
         let nm = nm.checked_div_euclid(i64::from(pulse.denominator())).unwrap_or(0);
         let at = self.loops.of_mut(axis);
@@ -86,7 +78,7 @@ impl Foreground<'_> {
         for (axis, pulse) in AXES.into_iter().zip(&mut pulses) {
             let Some(reading) = *self.desk.inputs.scales.of(axis) else { continue };
             let size = self.desk.pulse(axis);
-            let (error, correction) = self.desk.closed_loop.read(axis, reading, size);
+            let (error, correction) = self.desk.closed_loop.read(axis, reading, self.seen.before, size);
             *self.desk.following.of_mut(axis) = i32::try_from(error).unwrap_or(i32::MAX);
             let allowed = i64::from(self.desk.settings.axes.of(axis).following);
             if allowed > 0 && error.saturating_abs() > allowed && *self.desk.verified.of(axis) {

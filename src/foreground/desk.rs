@@ -57,18 +57,37 @@ pub(super) struct Desk {
     pub(super) trouble: Option<Trouble>,
     /// Offsets are on their way back to zero.
     pub(super) nulling: bool,
-    /// Where the axes were at the end of the last tick, in the machine's own coordinates.
-    pub(super) place: Lattice,
-    /// Places of each axis, in the machine's own coordinates, from which no path is braked past a soft limit.
-    pub(super) calm: PerAxis<(i32, i32)>,
-    /// And at the end of the one before.
-    pub(super) before: Lattice,
     /// The thread that is cut by hand.
     pub(super) lever: Lever,
     pub(super) pick_up: PickUp,
     /// Lead of the groove that is cut by hand.
     pub(super) thread_lead: Option<Lead>,
     refused: Deque<Refusal, REFUSALS>,
+}
+
+/// What each tick looks at when the channel has made it, all of it in the machine's own coordinates.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Seen {
+    /// Where the axes were at the end of the last tick.
+    pub(super) place: Lattice,
+    /// And at the end of the one before.
+    pub(super) before: Lattice,
+    /// Places of each axis from which no path is braked past a soft limit.
+    pub(super) calm: PerAxis<(i32, i32)>,
+}
+
+impl Seen {
+    pub(super) const NOWHERE: Self = {
+        let at = Lattice { x: 0, z: 0 };
+        Self { place: at, before: at, calm: PerAxis { x: (0, 0), z: (0, 0) } }
+    };
+
+    /// Whether no path that is there is braked past a soft limit.
+    #[inline]
+    pub(super) const fn is_calm(&self, at: Lattice) -> bool {
+        let PerAxis { x, z } = &self.calm;
+        at.x > x.0 && at.x < x.1 && at.z > z.0 && at.z < z.1
+    }
 }
 
 /// Refusals that are kept until somebody asks: a tick has few.
@@ -114,9 +133,6 @@ impl Desk {
             following: PerAxis { x: 0, z: 0 },
             trouble: None,
             nulling: false,
-            place: NOWHERE,
-            calm: PerAxis { x: (0, 0), z: (0, 0) },
-            before: NOWHERE,
             lever: Lever::Out,
             pick_up: PickUp::None,
             thread_lead: None,
@@ -139,7 +155,7 @@ impl Desk {
 
     /// Finds where no path is braked past a soft limit: further from it than the way that braking takes from the largest
     /// speed of any path, with what is planned already and the mean of an S law.
-    pub(super) fn find_calm(&mut self) {
+    pub(super) fn calm(&self) -> PerAxis<(i32, i32)> {
         let (x, z) = (&self.machine.x, &self.machine.z);
         let speed = u64::from(x.speed).saturating_add(u64::from(z.speed));
         // a hand brakes with its share
@@ -147,22 +163,26 @@ impl Desk {
         let accel = u64::from(least(x.accel, x.by_hand).min(least(z.accel, z.by_hand)).max(1));
         let brakes = speed.saturating_mul(speed).checked_div(accel << 1).unwrap_or(u64::MAX);
         let way = brakes.saturating_add(speed.saturating_mul(80)) >> FRACTION_BITS;
-        for axis in [Axis::X, Axis::Z] {
+        let of = |axis: Axis| {
             let pulse = self.pulse(axis);
             let pulses = way.saturating_mul(u64::from(pulse.denominator())).checked_div(u64::from(pulse.numerator()));
             let pulses = i32::try_from(pulses.unwrap_or(0)).unwrap_or(i32::MAX).saturating_add(2);
             let (least, most) = self.settings.axes.of(axis).limits;
-            *self.calm.of_mut(axis) = (least.saturating_add(pulses), most.saturating_sub(pulses));
-        }
+            (least.saturating_add(pulses), most.saturating_sub(pulses))
+        };
+        PerAxis { x: of(Axis::X), z: of(Axis::Z) }
     }
 
-    /// Whether no path that is there is braked past a soft limit.
-    pub(super) fn is_calm(&self, at: Lattice) -> bool {
-        let inside = |axis: Axis| {
-            let (least, most) = *self.calm.of(axis);
-            part(at, axis) > least && part(at, axis) < most
-        };
-        inside(Axis::X) && inside(Axis::Z)
+    /// Whether the operator's side has something to do in each tick, but for hands that move.
+    pub(super) fn acts(&self) -> bool {
+        let moves_by_itself =
+            matches!(self.mode, Mode::Power | Mode::Linked | Mode::Retrace) || self.homing.axis().is_some();
+        moves_by_itself
+            || self.own_path
+            || self.starting
+            || self.nulling
+            || self.inputs != Inputs::NONE
+            || !self.wheels.rest()
     }
 
     /// How far a pulse moves an axis.

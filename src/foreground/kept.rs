@@ -49,6 +49,7 @@ impl Foreground<'_> {
 
     /// Goes on from what was kept, before the first tick.
     pub fn restore(&mut self, kept: &Kept) {
+        self.attended = true;
         self.channel.set_position(kept.programmed);
         self.channel.set_offset(kept.offset);
         let desk = &mut self.desk;

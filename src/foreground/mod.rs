@@ -38,7 +38,7 @@ use interp_core::units::{Axis, Lattice};
 use crate::queue::Consumer;
 use alarm::{Alarm, Faults};
 pub use command::Command;
-use desk::Desk;
+use desk::{Desk, Seen};
 use inputs::{Inputs, PerAxis};
 use outputs::Outputs;
 use refusal::Refusal;
@@ -63,6 +63,10 @@ pub struct Foreground<'q> {
     faults: Faults,
     /// The emergency input is open.
     open: bool,
+    /// The next tick has something to do on the operator's side: since the last one there was a reading or a request, or what
+    /// either has begun still [acts](Desk::acts).
+    attended: bool,
+    seen: Seen,
     channel: Channel<LOOKAHEAD>,
     desk: Desk,
 }
@@ -77,7 +81,8 @@ impl<'q> Foreground<'q> {
     ) -> Self {
         let channel = Channel::new(machine, position);
         let (outputs, faults) = (Outputs::REST, Faults::default());
-        Self { channel, blocks, commands, outputs, alarm: None, faults, open: false, desk: Desk::new(machine) }
+        let (desk, seen) = (Desk::new(machine), Seen::NOWHERE);
+        Self { blocks, commands, outputs, alarm: None, faults, open: false, attended: true, seen, channel, desk }
     }
 
     /// Makes one tick of train.
@@ -123,6 +128,7 @@ impl<'q> Foreground<'q> {
     /// Takes the readings of a tick, to be called before it. Counts of wheels that no tick has taken add up.
     pub const fn read(&mut self, inputs: &Inputs) {
         let before = self.desk.inputs;
+        self.attended = true;
         self.desk.inputs = *inputs;
         let now = &mut self.desk.inputs;
         now.wheels.x = now.wheels.x.saturating_add(before.wheels.x);
@@ -137,6 +143,7 @@ impl<'q> Foreground<'q> {
             return;
         }
         self.alarm = Some(alarm);
+        self.attended = true;
         self.lose_place(alarm);
         if emergency {
             self.channel.abandon();
@@ -155,6 +162,7 @@ impl<'q> Foreground<'q> {
 
     /// Does what an operator does: a request at once, a turn of the wheels in the tick to come.
     pub fn act(&mut self, act: Act) {
+        self.attended = true;
         match act {
             Act::Command(command) => self.obey(command),
             Act::Wheels(..) | Act::Spindle(_) => act.read(&mut self.desk.inputs),
@@ -173,6 +181,7 @@ impl<'q> Foreground<'q> {
     /// # Errors
     /// Why it is refused: nothing has changed then.
     pub fn request(&mut self, command: Command) -> Result<(), Refusal> {
+        self.attended = true;
         match mode::refusal(&command, &self.situation()) {
             Some(refusal) => Err(refusal),
             None => self.carry_out(command),
@@ -246,6 +255,13 @@ impl<'q> Foreground<'q> {
     const fn place(&self) -> Lattice {
         let (at, datum) = (self.position(), self.desk.datum);
         Lattice { x: at.x.wrapping_add(datum.x), z: at.z.wrapping_add(datum.z) }
+    }
+
+    /// [`position`](Self::position) at the end of the last tick, as that has found it.
+    #[inline]
+    pub const fn overseen(&self) -> Lattice {
+        let (at, datum) = (self.seen.place, self.desk.datum);
+        Lattice { x: at.x.wrapping_sub(datum.x), z: at.z.wrapping_sub(datum.z) }
     }
 
     /// Where the program is.

@@ -13,7 +13,19 @@ use interp_core::units::{Axis, Lattice};
 
 impl Foreground<'_> {
     /// Before the channel's tick.
+    #[inline]
     pub(super) fn operate(&mut self) {
+        if self.attended {
+            self.attend();
+        }
+        if matches!(self.channel.state(), State::Running) && self.channel.speed() == 0 {
+            self.watch_start();
+        }
+    }
+
+    /// Readings, requests, and what either has begun.
+    #[inline(never)]
+    fn attend(&mut self) {
         if let Some(reading) = self.desk.inputs.spindle.take() {
             self.channel.read(&drive::Inputs { spindle: Some(reading), wheel: 0 });
         }
@@ -25,7 +37,7 @@ impl Foreground<'_> {
         self.feed_on();
         self.turn_contour();
         self.start_when_still();
-        self.watch_start();
+        self.attended = self.desk.acts() || !self.channel.hands_rest();
     }
 
     /// The handwheels of X and Z.
@@ -187,31 +199,43 @@ impl Foreground<'_> {
     }
 
     /// After the channel's tick.
+    #[inline]
     pub(super) fn oversee(&mut self, report: &Report) {
+        self.desk.trouble = report.driven.trouble;
+        let place = self.place();
+        if self.attended || report.driven.dropped != 0 {
+            self.oversee_acts(report, place);
+        }
+        let before = self.seen.place;
+        if place != before {
+            if !self.seen.is_calm(place) {
+                self.watch_limits(place);
+            }
+            let came = &mut self.desk.power.came;
+            if place.x != before.x {
+                came.x = Some(place.x > before.x);
+            }
+            if place.z != before.z {
+                came.z = Some(place.z > before.z);
+            }
+        }
+        (self.seen.before, self.seen.place) = (before, place);
+    }
+
+    /// What wheels and the machine's own paths have come to, and switches.
+    #[inline(never)]
+    fn oversee_acts(&mut self, report: &Report, place: Lattice) {
         let dropped = &mut self.desk.wheels.dropped_contour;
         *dropped = dropped.saturating_add(report.driven.dropped);
-        self.desk.trouble = report.driven.trouble;
         if self.desk.nulling && self.channel.hands_rest() {
             self.desk.nulling = false;
         }
         if self.desk.own_path && matches!(report.state, State::Idle | State::Ended) {
             self.desk.own_path = false;
         }
-        let place = self.place();
         if self.desk.inputs.guard || self.desk.inputs.ends != Inputs::NONE.ends {
             self.watch_switches(place);
         }
-        if place != self.desk.place {
-            self.watch_limits(place);
-            for axis in AXES {
-                let moved = part(place, axis).wrapping_sub(part(self.desk.place, axis));
-                if moved != 0 {
-                    *self.desk.power.came.of_mut(axis) = Some(moved > 0);
-                }
-            }
-        }
-        (self.desk.before, self.desk.place) = (self.desk.place, place);
-        self.desk.closed_loop.made(self.desk.place);
     }
 
     /// The guard holds what runs; a limit switch that an axis runs into is an alarm.
@@ -227,7 +251,7 @@ impl Foreground<'_> {
         }
         for axis in AXES {
             let (moved, Ends { plus, minus }) =
-                (part(at, axis).wrapping_sub(part(self.desk.place, axis)), *self.desk.inputs.ends.of(axis));
+                (part(at, axis).wrapping_sub(part(self.seen.place, axis)), *self.desk.inputs.ends.of(axis));
             if plus && moved > 0 || minus && moved < 0 {
                 self.raise(Alarm::limit_switch(axis));
             }
@@ -235,19 +259,13 @@ impl Foreground<'_> {
     }
 
     /// Holds a path that would lead an axis past its soft limit.
-    fn watch_limits(&mut self, at: Lattice) {
-        if !self.desk.is_calm(at) {
-            self.watch_limits_closely(at);
-        }
-    }
-
     #[cold]
-    fn watch_limits_closely(&mut self, at: Lattice) {
+    fn watch_limits(&mut self, at: Lattice) {
         if !matches!(self.channel.state(), State::Running) || self.channel.speed() == 0 {
             return;
         }
         for axis in AXES {
-            let moved = part(at, axis).wrapping_sub(part(self.desk.place, axis));
+            let moved = part(at, axis).wrapping_sub(part(self.seen.place, axis));
             let (near, hand) = (self.braking_pulses(axis), self.hand_pulses(axis));
             let minus = if moved <= 0 { near.saturating_sub(hand.min(0)) } else { -1 };
             let plus = if moved >= 0 { near.saturating_add(hand.max(0)) } else { -1 };
@@ -259,12 +277,8 @@ impl Foreground<'_> {
 
     /// Holds a path that stands and would begin past a soft limit, before it moves.
     fn watch_start(&mut self) {
-        let stands = matches!(self.channel.state(), State::Running) && self.channel.speed() == 0;
-        if !stands || !matches!(self.channel.drive(), Drive::Time) {
-            return;
-        }
         let at = self.place();
-        if self.desk.is_calm(at) {
+        if !matches!(self.channel.drive(), Drive::Time) || self.seen.is_calm(at) {
             return;
         }
         for axis in AXES {

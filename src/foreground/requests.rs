@@ -70,12 +70,12 @@ impl Foreground<'_> {
             Command::Configure(machine) => {
                 if self.channel.configure(&machine) {
                     self.desk.machine = machine;
-                    self.desk.find_calm();
+                    self.seen.calm = self.desk.calm();
                 }
             }
             Command::Settle(settings) => {
                 self.desk.settings = settings;
-                self.desk.find_calm();
+                self.seen.calm = self.desk.calm();
             }
             Command::Scale(click) => self.desk.wheels.set_scale(click),
             Command::FeedRate(feed) => self.desk.power.feed = feed,
@@ -259,7 +259,7 @@ impl Foreground<'_> {
 
     /// Whether an axis has moved in the last tick, or its hand has.
     fn moved(&self, axis: Axis) -> bool {
-        part(self.place(), axis) != part(self.desk.before, axis) || self.channel.hand_advance(axis) != 0
+        part(self.place(), axis) != part(self.seen.before, axis) || self.channel.hand_advance(axis) != 0
     }
 
     /// After an alarm nobody may know where the axes are.
