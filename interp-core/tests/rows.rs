@@ -67,10 +67,6 @@ impl Turns for Kinds<'_> {
         let diagonal = || (0..steps).filter(|n| self.run.turns(self.first + n));
         Turned { count: u32::try_from(diagonal().count()).unwrap(), last: diagonal().next_back().unwrap_or(77) }
     }
-
-    fn straight(&self, most: u32) -> u32 {
-        (0..most).find(|n| self.run.turns(self.asked + n)).unwrap_or(most)
-    }
 }
 
 impl Run {

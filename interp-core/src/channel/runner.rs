@@ -54,20 +54,29 @@ impl<O: Train> Sink<'_, O> {
         self.position.z = self.position.z.wrapping_add(i32::from(step.z));
     }
 
+    /// How many of `count` steps of two kinds, and as which kinds, may be made in a row as far as something is added.
+    #[inline(always)]
+    fn room(
+        &mut self,
+        times: &Times,
+        count: u32,
+        strides: Strides,
+        straight: impl FnOnce(u32) -> u32,
+    ) -> (u32, Strides) {
+        if self.superposed.is_live() {
+            self.superposed.room(times, count, &strides, straight, self.shaper, self.out)
+        } else {
+            (count, strides)
+        }
+    }
+
     /// Up to `count` steps of two kinds, as far as they can be made in a row; the position has to be [moved](Self::moved).
     #[inline(always)]
     fn row(&mut self, times: &mut Times, count: u32, strides: &Strides, turns: &mut impl Turns) -> Made {
-        let live = self.superposed.is_live();
-        let along;
-        let (mut count, mut strides) = (count, strides);
-        if live {
-            (count, along) = self.superposed.room(times, count, strides, turns, self.shaper, self.out);
-            strides = &along;
-        }
         if count == 0 {
             return Made { steps: 0, diagonals: 0 };
         }
-        self.shaper.run(times, count, strides, turns, !live, self.out)
+        self.shaper.run(times, count, strides, turns, !self.superposed.is_live(), self.out)
     }
 
     /// What a row leads by.
@@ -194,9 +203,10 @@ impl LineRunner {
             self.next = further(self.next, due);
             while due > 0 {
                 let mut row = Made { steps: 0, diagonals: 0 };
-                let strides = self.walker.strides();
+                let walker = &self.walker;
+                let (room, strides) = sink.room(&times, due, walker.strides(), |most| walker.straight(most));
                 self.walker.row(|turns| {
-                    row = sink.row(&mut times, due, &strides, turns);
+                    row = sink.row(&mut times, room, &strides, turns);
                     row.steps
                 });
                 sink.moved(strides.lead(row.steps, row.diagonals));
@@ -359,16 +369,26 @@ pub(super) fn row(walker: &mut ArcWalker, due: u32, times: &mut Times, sink: &mu
     if due == 0 {
         return 0;
     }
-    if walker.is_narrow() { row_in::<i32>(walker, due, times, sink) } else { row_in::<i64>(walker, due, times, sink) }
+    let (room, strides) = sink.room(times, due, walker.strides(), |most| walker.straight(most));
+    if walker.is_narrow() {
+        row_in::<i32>(walker, room, &strides, times, sink)
+    } else {
+        row_in::<i64>(walker, room, &strides, times, sink)
+    }
 }
 
 /// The same with the recurrence in words of one size.
 #[inline(always)]
-fn row_in<W: Word>(walker: &mut ArcWalker, due: u32, times: &mut Times, sink: &mut Sink<'_, impl Train>) -> u32 {
-    let strides = walker.strides();
+fn row_in<W: Word>(
+    walker: &mut ArcWalker,
+    room: u32,
+    strides: &Strides,
+    times: &mut Times,
+    sink: &mut Sink<'_, impl Train>,
+) -> u32 {
     let mut steps = 0;
     let lead = walker.row::<W>(|row| {
-        let made = sink.row(times, due, &strides, row);
+        let made = sink.row(times, room, strides, row);
         steps = made.steps;
         (made.steps, made.diagonals)
     });

@@ -17,7 +17,7 @@
 
 use crate::config::TICK_CLOCKS;
 use crate::curve::Step;
-use crate::curve::strides::{Strides, Turns};
+use crate::curve::strides::Strides;
 use crate::shaper::Shaper;
 use crate::times::{FRACTION, Times};
 use crate::train::Train;
@@ -153,19 +153,19 @@ impl Superposed {
 
     /// How many of `count` steps of the program, due at `times`, are made past it in a row, and as steps of which kinds: up to
     /// the next pulse that is added and the next step that moves an axis which owes one. What is due before the first of them
-    /// is made here.
+    /// is made here. `straight` tells how many steps, of so many, are straight before the next diagonal one.
     #[inline]
     pub fn room(
         &mut self,
         times: &Times,
         count: u32,
         strides: &Strides,
-        turns: &impl Turns,
+        straight: impl FnOnce(u32) -> u32,
         shaper: &mut Shaper,
         out: &mut impl Train,
     ) -> (u32, Strides) {
         let room = self.room_before(times, count, strides, shaper, out);
-        if room > 0 && self.waits() { (turns.straight(room), strides.straight()) } else { (room, *strides) }
+        if room > 0 && self.waits() { (straight(room), strides.straight()) } else { (room, *strides) }
     }
 
     /// The same, but for diagonal steps that move an axis which owes a pulse.

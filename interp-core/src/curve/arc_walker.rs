@@ -348,6 +348,17 @@ impl ArcWalker {
         if (self.x, self.z) == self.target { self.steps.wrapping_sub(self.done).min(self.minors) } else { 0 }
     }
 
+    /// How many steps of a row are straight before the next diagonal one, at most `most`.
+    pub(crate) fn straight(&self, most: u32) -> u32 {
+        let (mut decision, mut rise, mut steps) = (self.decision, self.major_rise, 0_u32);
+        while steps < most && decision < 0 {
+            decision = decision.wrapping_add(rise);
+            rise = rise.wrapping_add(self.major_curve);
+            steps = steps.wrapping_add(1);
+        }
+        steps
+    }
+
     /// Whether a row's recurrence fits 32 bits.
     #[inline]
     pub(crate) const fn is_narrow(&self) -> bool {
@@ -518,17 +529,6 @@ impl<W: Word> Turns for ArcRow<W> {
         // the rises change evenly, so they tell how often they did
         let count = self.minor_rise.times_from(self.before.1, self.minor_curve);
         Turned { count, last: self.turned.times_from(self.before.0, self.major_curve) }
-    }
-
-    #[inline(never)]
-    fn straight(&self, most: u32) -> u32 {
-        let (mut decision, mut rise, mut steps) = (self.decision, self.major_rise, 0_u32);
-        while steps < most && !decision.is_reached() {
-            decision = decision.plus(rise);
-            rise = rise.plus(self.major_curve);
-            steps = steps.wrapping_add(1);
-        }
-        steps
     }
 }
 

@@ -78,6 +78,12 @@ impl LineWalker {
         self.strides
     }
 
+    /// How many steps are straight before the next diagonal one, at most `most`.
+    pub(crate) fn straight(&self, most: u32) -> u32 {
+        let room = self.turn.wrapping_sub(1).wrapping_sub(self.remainder);
+        room.checked_div(self.rise).unwrap_or(most).min(most)
+    }
+
     /// Makes steps in a row: `make` asks the recurrence for each whether it is diagonal, and tells how many it made.
     #[inline(always)]
     pub(crate) fn row(&mut self, make: impl FnOnce(&mut LineRow) -> u32) {
@@ -114,12 +120,6 @@ impl Turns for LineRow {
         // a diagonal step leaves less than a rise, and each straight one adds one
         let since = self.remainder.checked_div(self.rise).unwrap_or(0);
         Turned { count: self.turned, last: steps.wrapping_sub(1).wrapping_sub(since) }
-    }
-
-    #[inline]
-    fn straight(&self, most: u32) -> u32 {
-        let room = self.turn.wrapping_sub(1).wrapping_sub(self.remainder);
-        room.checked_div(self.rise).unwrap_or(most).min(most)
     }
 }
 

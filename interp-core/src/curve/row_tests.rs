@@ -11,15 +11,11 @@ use proptest::prelude::*;
 /// Asks for so many steps, and compares what the row says of them; the diagonal ones.
 fn ask(row: &mut impl Turns, count: u32) -> u32 {
     let (mut turned, asked) = (Turned::default(), count.min(2047));
-    let (most, mut straight) = (asked / 2, None);
-    let said = row.straight(most);
     for number in 0..asked {
         if row.turns() {
-            straight = straight.or(Some(number));
             turned = Turned { count: turned.count + 1, last: number };
         }
     }
-    assert_eq!(said, straight.unwrap_or(most).min(most));
     let said = row.turned(asked);
     assert_eq!(said.count, turned.count);
     assert!(turned.count == 0 || said == turned, "{said:?} {turned:?}");
@@ -51,11 +47,14 @@ fn compare(sizes: [(u32, u32); 2], end: Lattice, centre: (i64, i64), sense: Sens
         if made == 0 {
             break;
         }
-        for _ in 0..made {
+        let (straight, mut diagonal) = (single.straight(made), None);
+        for number in 0..made {
             let narrow = single.is_narrow();
-            assert!(single.next_step().is_some());
+            let step = single.next_step().unwrap();
+            diagonal = diagonal.or((step.x != 0 && step.z != 0).then_some(number));
             assert!(!narrow || single.fits(i64::from(i32::MAX)), "{single:?}");
         }
+        assert!(count == 0 || straight == diagonal.unwrap_or(made));
         assert_eq!(single, rows);
     }
     assert_eq!((single.next_step(), single.position()), (None, (end.x, end.z)));
@@ -108,6 +107,9 @@ proptest! {
         let mut walker = line.walk();
         while walker.left() > 0 {
             let count = walker.left().min(most);
+            let (mut single, straight) = (walker, walker.straight(count));
+            let diagonal = (0..count).find(|_| single.next_step().is_some_and(|step| step.x != 0 && step.z != 0));
+            assert_eq!(straight, diagonal.unwrap_or(count));
             walker.row(|row| {
                 ask(row, count);
                 count

@@ -24,8 +24,6 @@ pub trait Turns {
     fn turns(&mut self) -> bool;
     /// What turned of the `steps` steps asked so far, below 2^11.
     fn turned(&self, steps: u32) -> Turned;
-    /// How many steps are straight before the next diagonal one, at most `most`; asks for none.
-    fn straight(&self, most: u32) -> u32;
 }
 
 /// A straight step moves the major axis, a diagonal one both.

@@ -4,7 +4,7 @@ extern crate std;
 
 use super::*;
 use crate::config::{AxisConfig, Config, Machine};
-use crate::curve::strides::Turned;
+use crate::curve::strides::{Turned, Turns};
 use crate::train::{Event, Train};
 use crate::units::{Feedrate, PulseSize};
 use proptest::prelude::*;
@@ -73,10 +73,6 @@ impl Turns for Kinds<'_> {
         let diagonal = || (0..steps).filter(|n| self.tick.turns >> (self.first + n) & 1 != 0);
         Turned { count: u32::try_from(diagonal().count()).unwrap(), last: diagonal().next_back().unwrap_or(77) }
     }
-
-    fn straight(&self, most: u32) -> u32 {
-        (0..most).find(|n| self.tick.turns >> (self.asked + n) & 1 != 0).unwrap_or(most)
-    }
 }
 
 /// Events and what was told of added pulses.
@@ -141,7 +137,8 @@ impl Side {
                 shaper.face(&strides, times.clock(), log);
             }
             let (room, along) = if most > 0 {
-                superposed.room(&times, (tick.count - made).min(most), &strides, &row, shaper, log)
+                let straight = |most: u32| (0..most).find(|n| tick.turns >> (made + n) & 1 != 0).unwrap_or(most);
+                superposed.room(&times, (tick.count - made).min(most), &strides, straight, shaper, log)
             } else {
                 (0, strides)
             };
