@@ -106,9 +106,11 @@ impl<'q> Foreground<'q> {
 
     /// A tick of the channel: it takes blocks of the machine's own, else the program's.
     fn run(&mut self, out: &mut impl Train) -> Report {
-        let (programs, dry) = (self.desk.takes_programs(), self.desk.dry());
-        let (own, blocks) = (&mut self.desk.own, &mut self.blocks);
-        let mut source = || own.next().or_else(|| if programs { dried(blocks.dequeue(), dry) } else { None });
+        let (desk, blocks) = (&mut self.desk, &mut self.blocks);
+        let mut source = || {
+            let own = desk.own.next();
+            own.or_else(|| if desk.takes_programs() { dried(blocks.dequeue(), desk.dry()) } else { None })
+        };
         self.channel.tick(&mut source, out)
     }
 

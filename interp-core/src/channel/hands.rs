@@ -79,6 +79,8 @@ pub(super) struct Hands {
     offset: Lattice,
     /// The part of its speed that the program may have, 16 fraction bits.
     left: u32,
+    /// A hand was touched since all were seen to rest.
+    touched: bool,
     /// Pulses of X and Z to be made in the next tick that nobody counts.
     correction: (i32, i32),
 }
@@ -90,6 +92,7 @@ impl Hands {
             z: AxisHand::new(&machine.z),
             offset: Lattice { x: 0, z: 0 },
             left: ALL,
+            touched: false,
             correction: (0, 0),
         }
     }
@@ -104,6 +107,7 @@ impl Hands {
     }
 
     const fn of(&mut self, axis: Axis) -> &mut AxisHand {
+        self.touched = true;
         match axis {
             Axis::X => &mut self.x,
             Axis::Z => &mut self.z,
@@ -123,7 +127,7 @@ impl Hands {
     /// Whether none moves nor has to.
     #[inline]
     pub(super) const fn at_rest(&self) -> bool {
-        self.x.hand.is_at_rest() && self.z.hand.is_at_rest()
+        !self.touched || self.x.hand.is_at_rest() && self.z.hand.is_at_rest()
     }
 
     /// A speed of the program, of which `limit` is the largest, as far as the hands leave room for it.
@@ -160,6 +164,7 @@ impl<const N: usize> Channel<N> {
     pub(super) fn by_hand(&mut self, retract: i32) -> (i32, i32) {
         let (x, z) = core::mem::take(&mut self.hands.correction);
         if self.hands.at_rest() {
+            self.hands.touched = false;
             (self.hands.x.at, self.hands.z.at) = (self.position.x, self.position.z);
             return (x, z);
         }

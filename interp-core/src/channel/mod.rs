@@ -430,7 +430,9 @@ impl<const N: usize> Channel<N> {
         let (x, z) = self.by_hand(retract);
         let x = x.wrapping_add(retract);
         if in_cycle || !self.hands.at_rest() || x != 0 || z != 0 {
-            self.superpose(x, z);
+            if x != 0 || z != 0 || self.compensation.is_on() {
+                self.superpose(x, z);
+            }
             if in_cycle {
                 output = self.run(out);
             }

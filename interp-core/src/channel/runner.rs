@@ -302,20 +302,25 @@ impl ArcRunner {
     #[inline]
     fn advance(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl Train>) {
         let mut rest = stretch;
-        while length >= self.zone_to {
-            let clocks =
-                share(rest.clocks, self.zone_to.saturating_sub(self.reached), length.saturating_sub(self.reached));
-            let part = Stretch { from: rest.from, clocks };
-            self.to(self.zone_to, part, sink);
-            let border = part.from.wrapping_add(clocks);
+        loop {
+            let crosses = length >= self.zone_to;
+            let clocks = if crosses {
+                share(rest.clocks, self.zone_to.saturating_sub(self.reached), length.saturating_sub(self.reached))
+            } else {
+                rest.clocks
+            };
+            self.to(length.min(self.zone_to), Stretch { from: rest.from, clocks }, sink);
+            if !crosses {
+                return;
+            }
+            let border = rest.from.wrapping_add(clocks);
             rest = Stretch { from: border, clocks: rest.clocks.wrapping_sub(clocks) };
             self.cross(border, sink);
         }
-        self.to(length, rest, sink);
     }
 
     /// Advances inside the zone.
-    #[inline]
+    #[inline(always)]
     fn to(&mut self, length: u64, stretch: Stretch, sink: &mut Sink<'_, impl Train>) {
         let to = self.coordinate(length);
         if self.next <= to {
