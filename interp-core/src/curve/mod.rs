@@ -22,6 +22,7 @@ pub mod line;
 pub mod method;
 pub(crate) mod octants;
 pub mod point_comparison;
+pub(crate) mod preparation;
 pub mod prepare_arc;
 pub mod proportion;
 pub mod rate_multiplier;

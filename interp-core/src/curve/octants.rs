@@ -29,6 +29,7 @@ pub(crate) fn lowest<const N: usize>(values: [i64; N]) -> [i64; N] {
 }
 
 /// A conic from (0, 0) to a lattice point.
+#[derive(Clone, Debug)]
 pub(crate) struct Octants {
     pub(crate) sense: Sense,
     pub(crate) reach: Reach,
@@ -43,6 +44,29 @@ pub(crate) struct Octants {
     pub(super) loose: bool,
     /// Gradient of `F`, both components, at the tangent points.
     tangent: i128,
+}
+
+/// Octants being laid out.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct Layout {
+    arc: Arc,
+    /// Where those laid out lead.
+    at: (i32, i32),
+    /// The next octant, and its number.
+    octant: u8,
+    piece: u8,
+}
+
+impl Layout {
+    /// Whether all are laid out.
+    pub(crate) const fn is_done(&self) -> bool {
+        self.piece >= self.arc.pieces
+    }
+
+    /// The arc, where all are laid out and lead to its end.
+    pub(crate) fn arc(&self) -> Option<Arc> {
+        (self.is_done() && self.at == self.arc.end).then_some(self.arc)
+    }
 }
 
 impl Octants {
@@ -144,6 +168,15 @@ impl Octants {
 
     /// The octants laid out; `None` where they do not lead to the end.
     pub(crate) fn arc(&mut self, timeline: Timeline) -> Option<Arc> {
+        let mut layout = self.layout(timeline)?;
+        while !layout.is_done() {
+            self.lay(&mut layout)?;
+        }
+        layout.arc()
+    }
+
+    /// Begins to lay the octants out; `None` where they do not lead to the end.
+    pub(crate) fn layout(&self, timeline: Timeline) -> Option<Layout> {
         let first = self.first();
         // the end belongs to the octant that it leaves: the one that the opposite sense would enter
         let last = Self::octant(self.gradient(self.end.0, self.end.1), self.sense.mirrored());
@@ -162,7 +195,7 @@ impl Octants {
         }
         // the same curve in smaller numbers; with its centre on the lattice in very small ones, cheaper to walk
         let [a, b, c, d] = lowest([to_i64(self.a), to_i64(self.b), to_i64(self.c), to_i64(self.d)]);
-        let mut arc = Arc {
+        let arc = Arc {
             a,
             b,
             c,
@@ -176,86 +209,84 @@ impl Octants {
             timeline,
             end: self.end,
         };
-        self.enumerate(&mut arc).then_some(arc)
+        Some(Layout { arc, at: (0, 0), octant: first, piece: 0 })
     }
 
-    /// Counts the lattice points of every octant visited. False where they do not lead to the end.
-    fn enumerate(&mut self, arc: &mut Arc) -> bool {
-        let mut at = (0_i32, 0_i32);
-        let mut octant = arc.octant;
-        for piece in 0..arc.pieces {
-            let axis = Arc::major(octant);
-            let (sign_x, sign_z) = Arc::signs(octant, self.sense);
-            let (sign, here, end) = match axis {
-                Axis::X => (sign_x, at.0, self.end.0),
-                Axis::Z => (sign_z, at.1, self.end.1),
-            };
-            let final_piece = piece.wrapping_add(1) == arc.pieces;
-            let last = if final_piece {
-                end
-            } else {
-                let (num, den) = self.border(octant, axis, Arc::ends_at_tangent(octant, self.sense));
-                let last = Self::before(num, den, sign);
-                // the end, off the curve, may lie before the border of its own octant: not past it and back
-                let beyond = last.wrapping_sub(end).wrapping_mul(i32::from(sign)) > 0;
-                if self.loose && beyond && piece.wrapping_add(2) == arc.pieces { end } else { last }
-            };
-            // the first lattice line of this octant
-            let (from, enters) = if piece == 0 {
-                (here, false)
-            } else {
-                let earlier = Arc::octant_before(octant, self.sense);
-                let tangent = Arc::ends_at_tangent(earlier, self.sense);
-                let (num, den) = self.border(earlier, axis, tangent);
-                let reached = Self::before(num, den, sign.wrapping_neg());
-                // a point on an extreme belongs to the octant before it
-                let on_border = i128::from(reached).times(den) == num;
-                let skip = if !tangent && on_border { i32::from(sign) } else { 0 };
-                (reached.wrapping_add(skip), true)
-            };
-            let steps = last.wrapping_sub(from).wrapping_mul(i32::from(sign));
-            if steps >= 0 || (final_piece && enters) {
-                let lines = steps.max(0).unsigned_abs();
-                if self.loose && piece == 0 {
-                    self.leads.start = self.lead(octant, (from, last), at, true);
-                }
-                if self.loose && final_piece && steps >= 0 {
-                    self.leads.end = self.lead(octant, (last, from), self.end, false);
-                    if piece == 0 && !self.share(octant, lines) {
-                        return false;
-                    }
-                }
-                if enters {
-                    let to = if steps < 0 {
-                        self.end
-                    } else if final_piece {
-                        self.led(octant, (from, lines), self.leads.end, self.end, false)
-                    } else {
-                        Self::point(axis, from, self.minor_at(octant, from))
-                    };
-                    let joint = (i8::try_from(to.0.wrapping_sub(at.0)), i8::try_from(to.1.wrapping_sub(at.1)));
-                    let (Ok(x), Ok(z)) = joint else { return false };
-                    if let Some(slot) = arc.joints.get_mut(usize::from(piece).wrapping_sub(1)) {
-                        *slot = (x, z);
-                    }
-                    at = to;
-                }
-                if let (Some(slot), true) = (arc.steps.get_mut(usize::from(piece)), steps > 0) {
-                    *slot = lines;
-                    at = if self.loose && final_piece {
-                        self.end
-                    } else if piece == 0 {
-                        self.led(octant, (last, lines), self.leads.start, at, true)
-                    } else {
-                        Self::point(axis, last, self.minor_at(octant, last))
-                    };
-                }
-            } else if final_piece {
-                return false;
+    /// Counts the lattice points of the next octant. `None` where they do not lead to the end.
+    pub(crate) fn lay(&mut self, layout: &mut Layout) -> Option<()> {
+        let Layout { arc, at, octant, piece } = layout;
+        let axis = Arc::major(*octant);
+        let (sign_x, sign_z) = Arc::signs(*octant, self.sense);
+        let (sign, here, end) = match axis {
+            Axis::X => (sign_x, at.0, self.end.0),
+            Axis::Z => (sign_z, at.1, self.end.1),
+        };
+        let final_piece = piece.wrapping_add(1) == arc.pieces;
+        let last = if final_piece {
+            end
+        } else {
+            let (num, den) = self.border(*octant, axis, Arc::ends_at_tangent(*octant, self.sense));
+            let last = Self::before(num, den, sign);
+            // the end, off the curve, may lie before the border of its own octant: not past it and back
+            let beyond = last.wrapping_sub(end).wrapping_mul(i32::from(sign)) > 0;
+            if self.loose && beyond && piece.wrapping_add(2) == arc.pieces { end } else { last }
+        };
+        // the first lattice line of this octant
+        let (from, enters) = if *piece == 0 {
+            (here, false)
+        } else {
+            let earlier = Arc::octant_before(*octant, self.sense);
+            let tangent = Arc::ends_at_tangent(earlier, self.sense);
+            let (num, den) = self.border(earlier, axis, tangent);
+            let reached = Self::before(num, den, sign.wrapping_neg());
+            // a point on an extreme belongs to the octant before it
+            let on_border = i128::from(reached).times(den) == num;
+            let skip = if !tangent && on_border { i32::from(sign) } else { 0 };
+            (reached.wrapping_add(skip), true)
+        };
+        let steps = last.wrapping_sub(from).wrapping_mul(i32::from(sign));
+        if steps >= 0 || (final_piece && enters) {
+            let lines = steps.max(0).unsigned_abs();
+            if self.loose && *piece == 0 {
+                self.leads.start = self.lead(*octant, (from, last), *at, true);
             }
-            octant = Arc::octant_after(octant, self.sense);
+            if self.loose && final_piece && steps >= 0 {
+                self.leads.end = self.lead(*octant, (last, from), self.end, false);
+                if *piece == 0 && !self.share(*octant, lines) {
+                    return None;
+                }
+            }
+            if enters {
+                let to = if steps < 0 {
+                    self.end
+                } else if final_piece {
+                    self.led(*octant, (from, lines), self.leads.end, self.end, false)
+                } else {
+                    Self::point(axis, from, self.minor_at(*octant, from))
+                };
+                let joint = (i8::try_from(to.0.wrapping_sub(at.0)), i8::try_from(to.1.wrapping_sub(at.1)));
+                let (Ok(x), Ok(z)) = joint else { return None };
+                if let Some(slot) = arc.joints.get_mut(usize::from(*piece).wrapping_sub(1)) {
+                    *slot = (x, z);
+                }
+                *at = to;
+            }
+            if let (Some(slot), true) = (arc.steps.get_mut(usize::from(*piece)), steps > 0) {
+                *slot = lines;
+                *at = if self.loose && final_piece {
+                    self.end
+                } else if *piece == 0 {
+                    self.led(*octant, (last, lines), self.leads.start, *at, true)
+                } else {
+                    Self::point(axis, last, self.minor_at(*octant, last))
+                };
+            }
+        } else if final_piece {
+            return None;
         }
-        at == self.end
+        *octant = Arc::octant_after(*octant, self.sense);
+        *piece = piece.wrapping_add(1);
+        Some(())
     }
 
     pub(super) const fn point(axis: Axis, major: i32, minor: i32) -> (i32, i32) {

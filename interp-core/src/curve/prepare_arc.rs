@@ -5,24 +5,21 @@
 //! pulse sizes where 44 bits hold it, else the nearest one; `c` and `d` are rounded to a 2^-17th of a pulse or finer.
 //! Everything here may take 128 bits: it runs in the background, once a block.
 
-use super::arc::{Arc, Timeline};
-use super::octants::Octants;
-use super::proportion::Proportion;
-use crate::math::{
-    HALF_TURN_Q60, RADIAN_Q30, Wide, angle_of, cosine_from_sine, root_wide, scale, sine, to_i32, to_i64, to_u64,
-};
+use super::arc::Arc;
+use super::preparation::{Preparation, Round, Step};
+use crate::math::{HALF_TURN_Q60, RADIAN_Q30, Wide, angle_of, cosine_from_sine, scale, sine, to_i64};
 use crate::units::{Lattice, PulseSize, Sense};
 
 /// What the two pulse sizes mean for every arc of a machine.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Metric {
-    x: PulseSize,
-    z: PulseSize,
+    pub(super) x: PulseSize,
+    pub(super) z: PulseSize,
     /// Pulse sizes over their greatest common measure.
-    across: i128,
-    along: i128,
+    pub(super) across: i128,
+    pub(super) along: i128,
     /// Angle from the middle to the end of a zone with major X, 60 fraction bits.
-    half_width_x: i64,
+    pub(super) half_width_x: i64,
 }
 
 /// A curve of an arc's two rounded ends.
@@ -118,12 +115,12 @@ impl Metric {
     }
 
     /// Coordinate of a lattice line, nm with 12 fraction bits, rounded to nearest.
-    fn place(pulse: PulseSize, pulses: i32) -> i128 {
+    pub(super) fn place(pulse: PulseSize, pulses: i32) -> i128 {
         scale(i128::from(pulses), i128::from(pulse.numerator()) << 12, i128::from(pulse.denominator()))
     }
 
     /// Weights of X and Z for arcs of `radius` (nm, 12 fraction bits): as large as 64 bits bear.
-    fn weights(&self, radius: i128) -> (i128, i128) {
+    pub(super) fn weights(&self, radius: i128) -> (i128, i128) {
         let (x2, z2) = (self.across.times(self.across), self.along.times(self.along));
         let largest = x2.max(z2);
         let coarser = if self.across > self.along { self.x } else { self.z };
@@ -143,10 +140,8 @@ impl Metric {
         if delta == (0, 0) && matches!(reach, Reach::Short) {
             return Prepared::Nothing;
         }
-        let off_x = Self::place(self.x, start.x).wrapping_sub(i128::from(centre.0) << 12);
-        let off_z = Self::place(self.z, start.z).wrapping_sub(i128::from(centre.1) << 12);
-        let square = off_x.squared().saturating_add(off_z.squared());
-        let radius = i128::from(root_wide(square.unsigned_abs()));
+        let mut preparation = Preparation::new(self.round(start, centre, reach), delta, sense);
+        let radius = preparation.find_radius(self);
         let coarser = if self.across > self.along { self.x } else { self.z };
         // a whole turn about less than a pulse stays where it is
         if delta == (0, 0) && radius < Self::place(coarser, 1) {
@@ -156,93 +151,21 @@ impl Metric {
         if matches!(reach, Reach::Short) && near && radius > Self::place(coarser, 3) {
             return Prepared::Chord;
         }
-        match Preparation::new(self, start, delta, centre, radius, (sense, reach)).and_then(Preparation::arc) {
-            Some((arc, turn)) => Prepared::Arc(arc, turn),
-            None => Prepared::Chord,
+        loop {
+            match preparation.step(self) {
+                Step::More => {}
+                Step::Done(arc, turn) => return Prepared::Arc(arc, turn),
+                Step::Fails => return Prepared::Chord,
+            }
         }
     }
-}
 
-/// One arc, on the way to an [`Arc`].
-struct Preparation<'m> {
-    metric: &'m Metric,
-    octants: Octants,
-}
-
-impl<'m> Preparation<'m> {
-    fn new(
-        metric: &'m Metric,
-        start: Lattice,
-        end: (i32, i32),
-        centre: (i64, i64),
-        radius: i128,
-        (sense, reach): (Sense, Reach),
-    ) -> Option<Self> {
-        let (a, b) = metric.weights(radius);
-        // 2 a (centre / pulse - start)
-        let about = |pulse: PulseSize, weight: i128, centre: i64, start: i32| {
+    /// What the preparation of an arc from `start` about `centre` needs.
+    pub(crate) fn round(&self, start: Lattice, (x, z): (i64, i64), reach: Reach) -> Round {
+        let off = |pulse: PulseSize, centre: i64, start: i32| {
             let (num, den) = (i128::from(pulse.numerator()), i128::from(pulse.denominator()));
-            let off = i128::from(centre).times(den).wrapping_sub(i128::from(start).times(num));
-            scale(weight.wrapping_mul(2), off, num)
+            to_i64(i128::from(centre).times(den).wrapping_sub(i128::from(start).times(num)))
         };
-        let c = about(metric.x, a, centre.0, start.x);
-        let d = about(metric.z, b, centre.1, start.z);
-        Some(Self { metric, octants: Octants::through([a, b, c, d], end, (sense, reach))? })
-    }
-
-    fn arc(mut self) -> Option<(Arc, Turn)> {
-        let (timeline, turn) = self.timeline(self.octants.first())?;
-        Some((self.octants.arc(timeline)?, turn))
-    }
-
-    fn timeline(&self, octant: u8) -> Option<(Timeline, Turn)> {
-        let (metric, octants) = (self.metric, &self.octants);
-        // X : Z of the radius vector in mm is (gradient x / pulse x) : (gradient z / pulse z)
-        let angle = |(x, z): (i128, i128)| angle_of(z.times(metric.across), x.times(metric.along));
-        let start = angle(octants.gradient(0, 0));
-        let stop = angle(octants.gradient(octants.end.0, octants.end.1));
-        let whole = i128::from(HALF_TURN_Q60).wrapping_mul(2);
-        let travel: i128 = match octants.sense {
-            Sense::CounterClockwise => 1,
-            Sense::Clockwise => -1,
-        };
-        let swept = i128::from(stop).wrapping_sub(i128::from(start)).times(travel);
-        let swept = swept.rest(whole)?;
-        // a whole turn and a little less or more: the angles alone can't tell
-        let lacks = matches!(octants.reach, Reach::Long) && swept < whole >> 2;
-        let sweep = if lacks { swept.wrapping_add(whole) } else { swept };
-        let span = |pulse: PulseSize, centre: i128, weight: i128| {
-            let den = weight.wrapping_mul(2).times(i128::from(pulse.denominator()));
-            scale(centre, i128::from(pulse.numerator()) << 12, den)
-        };
-        let (x, z) = (span(metric.x, octants.c, octants.a), span(metric.z, octants.d, octants.b));
-        let square = x.squared().saturating_add(z.squared());
-        let radius = root_wide(square.unsigned_abs());
-        if radius == 0 {
-            return None;
-        }
-        let length = to_u64(i128::from(radius).times(sweep) >> 60);
-        let middle = i128::from(octant.wrapping_add(1) >> 1 & 3).times(i128::from(HALF_TURN_Q60) >> 1);
-        let mut off = i128::from(start).wrapping_sub(middle).rest(whole)?;
-        if off > i128::from(HALF_TURN_Q60) {
-            off = off.wrapping_sub(whole);
-        }
-        let in_pulses = |pulse: PulseSize| {
-            to_u64(scale(i128::from(radius), i128::from(pulse.denominator()) << 4, i128::from(pulse.numerator())))
-        };
-        let quarter = HALF_TURN_Q60 >> 1;
-        let timeline = Timeline {
-            radius,
-            angle: Proportion::new(1 << 30, radius, length),
-            radius_pulses: [in_pulses(metric.x), in_pulses(metric.z)],
-            centre: [
-                to_i64(scale(octants.c, 1 << 16, octants.a.wrapping_mul(2))),
-                to_i64(scale(octants.d, 1 << 16, octants.b.wrapping_mul(2))),
-            ],
-            start_angle: to_i32(to_i64(off.times(travel) >> 30)),
-            half_width: [to_i32(metric.half_width_x >> 30), to_i32(quarter.wrapping_sub(metric.half_width_x) >> 30)],
-            length,
-        };
-        Some((timeline, Turn { start, sweep: to_i64(sweep), sense: octants.sense }))
+        Round { about: (off(self.x, x, start.x), off(self.z, z, start.z)), reach }
     }
 }
