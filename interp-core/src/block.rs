@@ -5,6 +5,7 @@
 //! joint with the block before may be taken without an axis jumping by more than its `max_jump`. It runs in the
 //! background; a block is all that the foreground gets.
 
+pub(crate) mod again;
 #[cfg(feature = "methods")]
 mod chain;
 #[cfg(feature = "methods")]
@@ -20,11 +21,12 @@ use crate::curve::arc::Arc;
 use crate::curve::conic_piece::ConicPiece;
 use crate::curve::line::Line;
 use crate::curve::method::Method;
-use crate::curve::prepare_arc::{Metric, Prepared, Reach};
+use crate::curve::prepare_arc::{Metric, Prepared, Reach, Turn};
 use crate::curve::proportion::Proportion;
 use crate::drive::gearing::Lead;
 use crate::math::{RADIAN_Q30, Wide, root_wide, scale, to_i64, to_u32, to_u64};
 use crate::units::{Axis, Feedrate, Lattice, Length, Point, Sense};
+use again::Source;
 use heapless::Vec;
 
 /// Speed in nanometres a tick, 12 fraction bits.
@@ -144,6 +146,8 @@ pub struct Motion {
     pub stop: Speed,
     /// The programmed curve goes on in the next block (an arc of more than half a turn).
     pub continues: bool,
+    /// What it can be made of again.
+    pub(crate) source: Source,
 }
 
 impl Motion {
@@ -299,6 +303,7 @@ impl Builder {
                         // one speed for the one curve that was programmed
                         let limit = first.limit.min(second.limit);
                         (first.limit, second.limit) = (limit, limit);
+                        (first.source, second.source) = (first.source.shared(), second.source.shared());
                     }
                 }
                 Split::Whole(reach) => self.arc(end, centre, sense, reach, pace, &mut built),
@@ -335,9 +340,19 @@ impl Builder {
         let (x, z) = (to.x.wrapping_sub(self.lattice.x), to.z.wrapping_sub(self.lattice.z));
         let Some(line) = Line::new(x, z) else { return };
         self.lattice = to;
-        let (dx, dz) = self.span(x, z);
+        let (curve, run) = self.straight(line, self.reach(line));
+        self.finish(curve, &run, pace, Source::Line, built);
+    }
+
+    /// How far a line leads: X and Z in nm with 12 fraction bits, and its length.
+    fn reach(&self, line: Line) -> (i128, i128, u64) {
+        let (dx, dz) = self.span(line.end().0, line.end().1);
         let square = dx.squared().saturating_add(dz.squared());
-        let length = root_wide(square.unsigned_abs()).max(1);
+        (dx, dz, root_wide(square.unsigned_abs()).max(1))
+    }
+
+    /// What a line that leads so far and the machine make of a motion.
+    fn straight(&self, line: Line, (dx, dz, length): (i128, i128, u64)) -> (Curve, Run) {
         let part = |d: i128| to_i64(scale(d, i128::from(RADIAN_Q30), i128::from(length)));
         let heading = (part(dx), part(dz));
         let by_axis = self.speed_limit(heading);
@@ -353,7 +368,7 @@ impl Builder {
         };
         #[cfg(not(feature = "methods"))]
         let curve = Curve::Line(line, steps);
-        self.finish(curve, &run, pace, built);
+        (curve, run)
     }
 
     /// How an arc to `end` is walked: a long one whole where that moves its centre by at most a 16th of a coarser
@@ -385,20 +400,25 @@ impl Builder {
             Prepared::Nothing => self.at = end,
             Prepared::Chord => self.line(end, pace, built),
             Prepared::Arc(arc, turn) => {
+                let source = Source::Arc { round: self.metric.round(self.lattice, centre, reach), shared: false };
                 self.at = end;
                 self.lattice = to;
-                let (entry, exit, extent) = (turn.heading(0), turn.heading(turn.sweep), turn.extent());
-                let by_axis = self.speed_limit(extent);
-                let accel = self.machine.x.accel.min(self.machine.z.accel);
-                // v^2 = 0.998 a R; both sides with 24 fraction bits
-                let square = u128::from(accel).wrapping_mul(u128::from(arc.radius()));
-                let by_bend = to_u32(root_wide(square.wrapping_mul(CURVATURE_SHARE) / 1000));
-                let length = arc.length().max(1);
-                let run = Run { length, reach: length, entry, exit, by_axis, by_bend, accel };
-                let curve = Curve::Arc(Arc { method: self.machine.method, ..arc });
-                self.finish(curve, &run, pace, built);
+                let (curve, run) = self.bent(arc, Bearings::of(&turn));
+                self.finish(curve, &run, pace, source, built);
             }
         }
+    }
+
+    /// What an arc and the machine make of a motion.
+    fn bent(&self, arc: Arc, Bearings { entry, exit, extent }: Bearings) -> (Curve, Run) {
+        let by_axis = self.speed_limit(extent);
+        let accel = self.machine.x.accel.min(self.machine.z.accel);
+        // v^2 = 0.998 a R; both sides with 24 fraction bits
+        let square = u128::from(accel).wrapping_mul(u128::from(arc.radius()));
+        let by_bend = to_u32(root_wide(square.wrapping_mul(CURVATURE_SHARE) / 1000));
+        let length = arc.length().max(1);
+        let run = Run { length, reach: length, entry, exit, by_axis, by_bend, accel };
+        (Curve::Arc(Arc { method: self.machine.method, ..arc }), run)
     }
 
     /// The largest value along a direction whose parts stay within `x` and `z`, and the axis that sets it.
@@ -416,8 +436,7 @@ impl Builder {
         Self::least(self.machine.x.speed, self.machine.z.speed, heading)
     }
 
-    fn finish(&mut self, curve: Curve, run: &Run, pace: Pace, built: &mut Built) {
-        let (jump_x, jump_z) = (self.machine.x.jump, self.machine.z.jump);
+    fn finish(&mut self, curve: Curve, run: &Run, pace: Pace, source: Source, built: &mut Built) {
         let feed = match pace {
             Pace::Rapid => Feed::Rapid,
             Pace::Feed(feed) => Feed::PerTick(speed_of(feed)),
@@ -429,7 +448,7 @@ impl Builder {
             Some(_) if feed.is_thread() != self.in_thread => 0,
             Some(before) => {
                 let change = (run.entry.0.wrapping_sub(before.0), run.entry.1.wrapping_sub(before.1));
-                Self::least(jump_x, jump_z, change).0
+                Self::least(self.machine.x.jump, self.machine.z.jump, change).0
             }
             None => Speed::MAX,
         };
@@ -439,26 +458,31 @@ impl Builder {
             built.limited = Some(Limited { axis, speed });
         }
         self.heading = Some(run.exit);
-        let motion = Motion {
+        // at most two motions a curve: the capacity
+        let _ = built.motions.push(self.motion_of(curve, run, feed, joint, source));
+    }
+
+    fn motion_of(&self, curve: Curve, run: &Run, feed: Feed, joint: Speed, source: Source) -> Motion {
+        let (jump_x, jump_z) = (self.machine.x.jump, self.machine.z.jump);
+        Motion {
             curve,
             length: run.length,
             feed,
-            limit: speed.min(run.by_bend).max(1),
+            limit: run.by_axis.0.min(run.by_bend).max(1),
             accel: run.accel,
             joint,
             start: Self::least(jump_x, jump_z, run.entry).0,
             stop: Self::least(jump_x, jump_z, run.exit).0,
             continues: false,
-        };
-        // at most two motions a curve: the capacity
-        let _ = built.motions.push(motion);
+            source,
+        }
     }
 
     /// The motion of one part of a curve that is made part by part; `limited` keeps what cuts its feed down most.
     #[cfg(feature = "methods")]
     fn chained(&mut self, curve: Curve, run: &Run, pace: Pace, limited: &mut Option<Limited>) -> Option<Motion> {
         let mut built = Built::default();
-        self.finish(curve, run, pace, &mut built);
+        self.finish(curve, run, pace, Source::Part, &mut built);
         if built.limited.is_some_and(|new| limited.is_none_or(|known| new.speed < known.speed)) {
             *limited = built.limited;
         }
@@ -478,6 +502,21 @@ struct Run {
     /// What the curvature allows.
     by_bend: Speed,
     accel: u32,
+}
+
+/// Directions of travel on an arc.
+#[derive(Copy, Clone, Debug)]
+struct Bearings {
+    entry: Direction,
+    exit: Direction,
+    /// The largest part of each axis anywhere.
+    extent: Direction,
+}
+
+impl Bearings {
+    fn of(turn: &Turn) -> Self {
+        Self { entry: turn.heading(0), exit: turn.heading(turn.sweep), extent: turn.extent() }
+    }
 }
 
 /// How an arc is walked.

@@ -11,7 +11,7 @@ use crate::drive::follower::Follower;
 use crate::drive::gearing::{Gearing, Lead};
 use crate::drive::spindle::{COUNT, Spindle};
 use crate::drive::wheel::{Click, Wheel};
-use crate::drive::{Drive, DriveRefusal, Driven, Inputs, ThreadStage};
+use crate::drive::{BackEnd, Drive, DriveRefusal, Driven, Inputs, ThreadStage};
 use crate::math::to_u32;
 use crate::train::Train;
 
@@ -185,6 +185,11 @@ impl<const N: usize> Channel<N> {
         if matches!(drive, Drive::Spindle(_)) && self.crank.spindle.is_none() {
             return Err(DriveRefusal::NoEncoder);
         }
+        // the tool went on without the lead of an S law
+        self.lead = super::lead::Lead::at(match &self.current {
+            Current::Motion(active) => active.done,
+            Current::Nothing | Current::Dwell(_) => 0,
+        });
         self.crank.drive = drive;
         self.crank.stand();
         self.crank.driven = Driven::default();
@@ -236,6 +241,7 @@ impl<const N: usize> Channel<N> {
     pub(super) fn turn_crank(&mut self, out: &mut impl Train) -> Option<Output> {
         self.crank.driven = Driven { locked: self.crank.driven.locked, ..Driven::NONE };
         let counts = core::mem::take(&mut self.crank.counts);
+        self.trail.slide(self.crank.back);
         if let Current::Dwell(clocks) = &mut self.current {
             if matches!(self.state, State::Running) {
                 *clocks = clocks.saturating_sub(u64::from(TICK_CLOCKS));
@@ -244,6 +250,9 @@ impl<const N: usize> Channel<N> {
                 }
             }
             self.crank.driven.dropped = i32::from(counts);
+            if counts < 0 && matches!(self.crank.drive, Drive::Wheel(_)) {
+                self.crank.driven.back_end = Some(BackEnd::Dwell);
+            }
             return None;
         }
         if let (Drive::Wheel(click), false) = (self.crank.drive, self.crank.in_thread) {
@@ -273,7 +282,7 @@ impl<const N: usize> Channel<N> {
             Work::End => !wheel,
             Work::Dwell(_) | Work::Output(_) | Work::Stop | Work::OptionalStop => true,
         });
-        if other && matches!(self.state, State::Running) {
+        if other && !self.trail.is_behind() && matches!(self.state, State::Running) {
             self.crank.ungear();
             if let super::Next::Output(output) = self.next_block() {
                 return Some(output);

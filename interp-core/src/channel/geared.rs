@@ -157,7 +157,7 @@ impl<const N: usize> Channel<N> {
         let exit = match (back, self.crank.in_thread) {
             (true, true) => 0,
             (true, false) => self.trail.exit_back(),
-            (false, _) => self.trail.exit(&self.ahead, motion),
+            (false, _) => self.trail.exit(&self.ahead, motion, false),
         };
         let rest = room.saturating_sub(self.crank.follower.advance().unsigned_abs());
         let most = approach(room, motion.accel).max(i64::from(root(motion.reachable(rest, exit))));

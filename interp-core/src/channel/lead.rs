@@ -37,21 +37,25 @@ pub(super) struct Lead {
 }
 
 impl Lead {
-    /// At rest where the tool is.
+    /// At rest at the start of the tool's block.
     pub(super) const fn new() -> Self {
+        Self::at(0)
+    }
+
+    /// At rest with the tool, so far along its block.
+    pub(super) const fn at(done: u64) -> Self {
         Self {
             block: 0,
-            done: 0,
+            done,
             speed: 0,
             pace: 0,
-            paced_at: Overrides::NONE,
+            // its pace is found anew
+            paced_at: Overrides::AT_LIMIT,
             cruise: Cruise::new(),
             behind: Margins::EMPTY,
         }
     }
-}
 
-impl Lead {
     /// The feeds are others: its pace is found anew.
     pub(super) const fn repace(&mut self) {
         self.paced_at = Overrides::AT_LIMIT;
@@ -140,7 +144,11 @@ impl<const N: usize> Channel<N> {
                     break;
                 }
             }
-            let (exit, margins) = self.ahead.leave(lead.block, motion, ticks);
+            let (exit, margins) = if lead.block == 0 && self.trail.stands_behind() {
+                (0, Margins::EMPTY)
+            } else {
+                self.ahead.leave(lead.block, motion, ticks)
+            };
             let calm = left.saturating_sub(margins.longest());
             let steady = lead.speed == target && clock == 0;
             let advance = if steady && lead.cruise.holds(target, calm) {
@@ -173,7 +181,8 @@ impl<const N: usize> Channel<N> {
         let lead = &mut self.lead;
         let before = ahead_of(&self.current, &self.ahead, lead.block);
         let next = self.ahead.motion(lead.block);
-        if self.ahead.stands(lead.block) || before.is_none() {
+        let stands = self.ahead.stands(lead.block) || lead.block == 0 && self.trail.stands_behind();
+        if stands || before.is_none() {
             lead.speed = 0;
         }
         let Some(next) = next else { return false };

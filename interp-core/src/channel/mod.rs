@@ -33,7 +33,7 @@ use crate::block::{Block, Feed, Motion, Output, Speed, Work};
 use crate::compensation::Compensation;
 use crate::compensation::pitch::PitchTable;
 use crate::config::{Machine, TICK_CLOCKS};
-use crate::drive::{Drive, Driven};
+use crate::drive::{BackEnd, Drive, Driven};
 use crate::governor::Advance;
 use crate::governor::square;
 use crate::math::root;
@@ -212,7 +212,7 @@ impl<const N: usize> Channel<N> {
             waited: 0,
             crank: Crank::of(machine),
             hands: Hands::new(machine),
-            trail: Trail::new(),
+            trail: Trail::new(machine),
             lead: Lead::new(),
             window: Window::new(machine.smoothing),
         }
@@ -225,7 +225,7 @@ impl<const N: usize> Channel<N> {
                 self.complete = false;
                 self.closed = false;
                 // another path's motions are no way back
-                self.trail.clear();
+                self.trail.clear(BackEnd::Start);
                 self.waited = 0;
                 self.single.pass_all();
                 self.state = State::Filling;
@@ -334,6 +334,7 @@ impl<const N: usize> Channel<N> {
             self.crank.configure(machine);
             self.window = Window::new(machine.smoothing);
             self.lead = Lead::new();
+            self.trail.configure(machine);
         }
         idle
     }
@@ -503,6 +504,13 @@ impl<const N: usize> Channel<N> {
         }
         self.waited = if taken > 0 { 0 } else { self.waited.saturating_add(1) };
         let active = match &self.current {
+            // what comes follows the motion begun last, wherever the tool is
+            _ if self.trail.is_behind() => match self.trail.newest() {
+                Some(newest) => Some(newest).filter(|_| !self.trail.stands_behind()),
+                // it is planned for when the tool comes near
+                None => return,
+            },
+            _ if self.trail.stands_behind() => None,
             Current::Motion(active) => Some(&active.motion),
             Current::Nothing | Current::Dwell(_) => None,
         };
@@ -518,7 +526,9 @@ impl<const N: usize> Channel<N> {
         if self.crank.turns {
             return self.turn_crank(out);
         }
-        if self.window.ticks() > 0 && self.follows() {
+        if self.trail.is_behind() {
+            self.trail.slide(false);
+        } else if self.window.ticks() > 0 && self.follows() {
             if self.window.is_drained() && matches!(self.current, Current::Nothing) && self.stops_single() {
                 self.state = State::Stopped;
                 self.speed = 0;
@@ -569,9 +579,9 @@ impl<const N: usize> Channel<N> {
         if !matches!(self.state, State::Running) && self.speed == 0 {
             return Next::Stands;
         }
-        if self.trail.go_on() {
-            self.enter_again();
-            return Next::Goes;
+        if self.trail.is_behind() {
+            // what is not ready yet is waited for
+            return if self.trail.go_on() && self.enter_again() { Next::Goes } else { Next::Stands };
         }
         // the tool is where it should be before the program stands; and only a cycle moves what is added
         let moves = self.ahead.next().is_some_and(|(block, _)| lookahead::as_motion(block).is_some());
@@ -612,7 +622,7 @@ impl<const N: usize> Channel<N> {
                 self.current = Current::Dwell(u64::from(ticks).wrapping_mul(u64::from(TICK_CLOCKS)));
             }
             Work::Output(output) => {
-                self.trail.clear();
+                self.trail.clear(BackEnd::Output);
                 self.ahead.skip();
                 return Next::Output(output);
             }
@@ -622,9 +632,10 @@ impl<const N: usize> Channel<N> {
             Work::End => {
                 self.state = State::Ended;
                 self.line = 0;
+                self.trail.clear(BackEnd::Start);
             }
         }
-        self.trail.clear();
+        self.trail.stand();
         self.ahead.skip();
         Next::Goes
     }
@@ -632,7 +643,7 @@ impl<const N: usize> Channel<N> {
     /// Forgets all blocks after a reset.
     fn forget(&mut self) {
         self.ahead.clear();
-        self.trail.clear();
+        self.trail.clear(BackEnd::Start);
         // X stands where a thread has left it
         self.position.x = self.position.x.wrapping_add(self.crank.thread.take());
         self.crank.stand();
@@ -647,6 +658,8 @@ impl<const N: usize> Channel<N> {
     /// Advances the motion from `clock` on; the clocks used, or `None` where it stands for the rest of the tick.
     fn go(&mut self, clock: u32, out: &mut impl Train) -> Option<u32> {
         let holding = !matches!(self.state, State::Running);
+        // an S law takes over where the tool is in the motion begun last, from standstill
+        let smooth = self.window.ticks() > 0;
         let Current::Motion(active) = &mut self.current else { return None };
         if active.paced_at != self.overrides {
             active.repace(self.overrides, &self.crank);
@@ -671,7 +684,7 @@ impl<const N: usize> Channel<N> {
             let exit = if self.single.stops(&self.ahead, self.line) {
                 square(active.motion.stop)
             } else {
-                self.trail.exit(&self.ahead, &active.motion)
+                self.trail.exit(&self.ahead, &active.motion, smooth)
             };
             let budget = TICK_CLOCKS.wrapping_sub(clock);
             let advance = active.motion.advance(self.speed, left, exit, target, budget);
@@ -689,7 +702,7 @@ impl<const N: usize> Channel<N> {
         if advance.done {
             active.runner.finish(clock.wrapping_add(advance.clocks), &mut sink);
             let stops = self.single.stops(&self.ahead, self.line) && self.speed <= active.motion.stop;
-            let goes_on = (self.trail.is_behind() || self.ahead.continues()) && !stops;
+            let goes_on = self.trail.runs_on(smooth).unwrap_or_else(|| self.ahead.continues()) && !stops;
             self.current = Current::Nothing;
             if !goes_on {
                 self.speed = 0;

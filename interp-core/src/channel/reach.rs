@@ -47,7 +47,8 @@ impl<const N: usize> Channel<N> {
             }
             return;
         }
-        let ahead = self.ahead.blocks().map_while(lookahead::as_motion);
+        let whole = self.trail.is_whole();
+        let ahead = self.ahead.blocks().take_while(|_| whole).map_while(lookahead::as_motion);
         for later in self.trail.later().chain(ahead) {
             if way > far {
                 return;

@@ -42,7 +42,7 @@ const SLOW: u32 = 100;
 /// Share of its largest speed in a cut, as a shift, below which a spindle hardly turns.
 const HARDLY: u32 = 4;
 
-/// Blocks of a pass that the way back is certainly known for: one less than the trail keeps.
+/// Blocks of a pass that the way back is certainly known for: fewer than stand ready in the trail.
 const MOST_BLOCKS: u32 = 8;
 
 /// What a thread keeps besides its gearing.

@@ -6,6 +6,7 @@
 //! blocks that it leads through, each with the part of the tick that its length has in the whole. Backward it leads over
 //! joints into the motions of the [trail](super::trail), and ends exactly at its start.
 
+use super::lead::Lead;
 use super::lookahead::Overrides;
 use super::runner::{Runner, Sink, share};
 use super::{Active, Channel, Current};
@@ -90,7 +91,8 @@ impl<const N: usize> Channel<N> {
             Current::Dwell(_) => false,
             Current::Motion(_) => back && self.trail.go_back() && self.enter_from_behind(),
             Current::Nothing if back => self.enter_from_behind(),
-            Current::Nothing => self.trail.go_on() && self.enter_again() || self.begin_motion(),
+            Current::Nothing if self.trail.is_behind() => self.trail.go_on() && self.enter_again(),
+            Current::Nothing => self.begin_motion(),
         }
     }
 
@@ -127,6 +129,7 @@ impl<const N: usize> Channel<N> {
         let Some((line, motion)) = self.trail.here() else { return false };
         self.current = Current::Motion(Active::new(motion, self.overrides, self.position));
         self.line = line;
+        self.lead = Lead::new();
         true
     }
 }

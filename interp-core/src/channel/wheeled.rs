@@ -9,9 +9,11 @@
 //!
 //! It sets off with the speed of one tick's acceleration, not with the jump that motors allow: a wheel is turned gently.
 
+use super::trail::Trail;
 use super::{Channel, Current, Pull, State};
 use crate::block::{Motion, Output, Speed};
 use crate::config::TICK_CLOCKS;
+use crate::drive::BackEnd;
 use crate::drive::wheel::Click;
 use crate::governor::square;
 use crate::math::root;
@@ -63,7 +65,9 @@ impl<const N: usize> Channel<N> {
         }
         self.crank.back = to_go < 0;
         if !self.enter(self.crank.back) {
-            if self.crank.back {
+            // without an end the motion before is not ready yet: it waits
+            if let (true, Some(end)) = (self.crank.back, self.end_of_way_back()) {
+                self.crank.driven.back_end = Some(end);
                 self.drop_rest(click);
             }
             return false;
@@ -76,8 +80,17 @@ impl<const N: usize> Channel<N> {
         true
     }
 
+    /// Why the way back ends here.
+    fn end_of_way_back(&self) -> Option<BackEnd> {
+        let thread = self.trail.here().is_some_and(|(_, motion)| motion.feed.is_thread());
+        if thread && !self.crank.in_thread { Some(BackEnd::Thread) } else { self.trail.end() }
+    }
+
     /// Pushed on where no motion follows: other work is done, else what is left is dropped.
     fn end_of_path(&mut self, click: Click) -> Option<Output> {
+        if self.trail.is_behind() {
+            return None;
+        }
         let output = self.other_work();
         if output.is_none() && matches!(self.current, Current::Nothing) {
             self.drop_rest(click);
@@ -97,7 +110,10 @@ impl<const N: usize> Channel<N> {
         if back {
             return self.trail.previous();
         }
-        self.trail.next().or_else(|| self.ahead.next().and_then(|(block, _)| super::lookahead::as_motion(block)))
+        if self.trail.is_behind() {
+            return self.trail.next();
+        }
+        self.ahead.next().and_then(|(block, _)| super::lookahead::as_motion(block))
     }
 
     /// Moves inside the present motion from `clock` on; the clocks used, or `None` where it stands for the rest of the tick.
@@ -106,7 +122,7 @@ impl<const N: usize> Channel<N> {
         let room = self.room(back);
         let Current::Motion(active) = &self.current else { return None };
         let motion = &active.motion;
-        let mut exit = if back { self.trail.exit_back() } else { self.trail.exit(&self.ahead, motion) };
+        let mut exit = if back { self.trail.exit_back() } else { self.trail.exit(&self.ahead, motion, false) };
         let to_go = self.crank.wheel.to_go();
         let asked = u64::try_from(if back { to_go.wrapping_neg() } else { to_go }).unwrap_or(0);
         let mut left = room;
@@ -120,7 +136,7 @@ impl<const N: usize> Channel<N> {
         let target = if stops { self.hands.cap(pace, motion.limit) } else { 0 };
         if !stops {
             left = room;
-            exit = if back { self.trail.exit_back() } else { self.trail.exit(&self.ahead, motion) };
+            exit = if back { self.trail.exit_back() } else { self.trail.exit(&self.ahead, motion, false) };
             if self.speed <= motion.accel {
                 self.speed = 0;
                 return None;
@@ -141,8 +157,9 @@ impl<const N: usize> Channel<N> {
 
     /// Where a stretch is over: at the wheel's end it stands, at a joint it goes on at the joint's speed at most.
     fn over_joint(&mut self, back: bool) {
+        let border = |trail: &Trail, motion: &Motion| if trail.stands_before() { 0 } else { motion.joint };
         let joint = match &self.current {
-            Current::Motion(active) => active.motion.joint,
+            Current::Motion(active) => border(&self.trail, &active.motion),
             Current::Nothing | Current::Dwell(_) => crate::block::Speed::MAX,
         };
         if self.crank.wheel.to_go() == 0 || self.room(back) > 0 || !self.enter(back) {
@@ -150,7 +167,7 @@ impl<const N: usize> Channel<N> {
             return;
         }
         let Current::Motion(active) = &self.current else { return };
-        let joint = if back { joint } else { active.motion.joint };
+        let joint = if back { joint } else { border(&self.trail, &active.motion) };
         self.speed = self.speed.min(joint).min(active.motion.limit);
     }
 }

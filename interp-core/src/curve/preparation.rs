@@ -22,7 +22,6 @@ pub(crate) struct Round {
 
 /// What a step led to.
 #[derive(Copy, Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "there is no allocation")]
 pub(crate) enum Step {
     /// There is more to do.
     More,

@@ -64,6 +64,16 @@ impl Lead {
         ((self.nm as u64).wrapping_mul(per as u64).wrapping_add(self.part as u64), per)
     }
 
+    /// Nanometres a turn, rounded down, and a fraction of one: numerator and denominator.
+    pub(crate) const fn parts(self) -> (u32, u32, u32) {
+        (self.nm, self.part, self.per)
+    }
+
+    /// The lead of [`parts`](Self::parts).
+    pub(crate) const fn of_parts((nm, part, per): (u32, u32, u32)) -> Self {
+        Self { nm, part, per }
+    }
+
     /// Nanometres a turn, rounded down.
     pub const fn nm(self) -> u32 {
         self.nm

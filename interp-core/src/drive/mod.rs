@@ -87,6 +87,36 @@ pub enum ThreadStage {
     Entering,
 }
 
+/// Why the way back along the path ends.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum BackEnd {
+    /// The cycle began here.
+    Start,
+    /// An output was set here: spindle and tool do not run backward.
+    Output,
+    /// A thread begins or ends here: it is run from its start only.
+    Thread,
+    /// A dwell is under way.
+    Dwell,
+    /// A curve was run before that is not kept: it was made part by part.
+    Curve,
+    /// What was run before is no longer kept: there were too many blocks since.
+    Full,
+}
+
+impl core::fmt::Display for BackEnd {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Start => "the way back ends here: the cycle began at this place",
+            Self::Output => "the way back ends here: spindle and tool do not run backward",
+            Self::Thread => "the way back ends here: a thread is run from its start only",
+            Self::Dwell => "there is no way back during a dwell: let it end",
+            Self::Curve => "the way back ends here: the curve before was made part by part and is not kept",
+            Self::Full => "the way back ends here: the blocks before are no longer kept",
+        })
+    }
+}
+
 /// What the drive did in a tick.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Driven {
@@ -98,11 +128,13 @@ pub struct Driven {
     pub trouble: Option<Trouble>,
     /// Where a thread is.
     pub stage: ThreadStage,
+    /// The wheel asked to go farther back, and why that can't be.
+    pub back_end: Option<BackEnd>,
 }
 
 impl Driven {
     /// Nothing.
-    pub const NONE: Self = Self { dropped: 0, locked: false, trouble: None, stage: ThreadStage::None };
+    pub const NONE: Self = Self { dropped: 0, locked: false, trouble: None, stage: ThreadStage::None, back_end: None };
 }
 
 /// Why the drive was not switched.

@@ -14,6 +14,7 @@
 mod bench;
 mod hold;
 mod parts;
+mod retrace;
 mod spindle;
 mod switching;
 mod thread;
