@@ -39,7 +39,7 @@ mod app {
     use handcnc::foreground::heartbeat::Heartbeat;
     use handcnc::foreground::kept::Record;
     use handcnc::foreground::train_queue::{Player, TrainQueue, Writer};
-    use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
+    use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground, Memory};
     use handcnc::queue::{Consumer, Producer, Queue};
     use interp_core::block::Block;
     use interp_core::units::Lattice;
@@ -109,6 +109,7 @@ mod app {
         blocks_queue: Queue<Block, BLOCK_QUEUE> = Queue::new(),
         commands_queue: Queue<Command, COMMAND_QUEUE> = Queue::new(),
         // the largest are made where they stay: on the way through the stack they would be there three times
+        memory: Memory = Memory::new(),
         foreground_place: MaybeUninit<Foreground<'static>> = MaybeUninit::uninit(),
         link_place: MaybeUninit<Link> = MaybeUninit::uninit(),
     ])]
@@ -123,7 +124,8 @@ mod app {
         let (commands, commands_out) = cx.local.commands_queue.split();
         let start = parameters.start();
         let position = Lattice { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) };
-        let new = || Foreground::new(&machine, position, blocks_out, commands_out);
+        let memory = cx.local.memory;
+        let new = || Foreground::new(&machine, position, blocks_out, commands_out, memory);
         let foreground = make(cx.local.foreground_place, new);
         foreground.obey(Command::FeedOverride(parameters.feed_override()));
         foreground.obey(Command::Settle(parameters.operation(&machine)));

@@ -29,7 +29,7 @@ pub mod train_queue;
 mod wheels;
 
 use interp_core::block::{Block, Feed, Output, Speed, Work};
-use interp_core::channel::{Channel, Report, State};
+use interp_core::channel::{self, Channel, Report, State};
 use interp_core::compensation::pitch::PitchTable;
 use interp_core::config::Machine;
 use interp_core::train::Train;
@@ -46,6 +46,9 @@ use rehearsal::Act;
 
 /// Blocks that a lathe looks ahead. The same on every board and on the desktop, since the pulses depend on it.
 pub const LOOKAHEAD: usize = 64;
+
+/// A foreground's blocks, to come and gone.
+pub type Memory = channel::Memory<LOOKAHEAD>;
 
 /// Capacity of the queue of blocks: what the background may be ahead of the look-ahead.
 pub const BLOCK_QUEUE: usize = 16;
@@ -67,19 +70,23 @@ pub struct Foreground<'q> {
     /// either has begun still [acts](Desk::acts).
     attended: bool,
     seen: Seen,
-    channel: Channel<LOOKAHEAD>,
+    channel: Channel<LOOKAHEAD, &'q mut Memory>,
     desk: Desk,
 }
 
 impl<'q> Foreground<'q> {
     /// A lathe that stands at `position` and takes from these queues. The position counts as known.
+    /// The blocks that it knows stand in `memory`.
+    // as a call it would pass over the stack once more
+    #[inline(always)]
     pub fn new(
         machine: &Machine,
         position: Lattice,
         blocks: Consumer<'q, Block>,
         commands: Consumer<'q, Command>,
+        memory: &'q mut Memory,
     ) -> Self {
-        let channel = Channel::new(machine, position);
+        let channel = Channel::with_memory(machine, position, memory);
         let (outputs, faults) = (Outputs::REST, Faults::default());
         let (desk, seen) = (Desk::new(machine), Seen::NOWHERE);
         Self { blocks, commands, outputs, alarm: None, faults, open: false, attended: true, seen, channel, desk }

@@ -11,7 +11,7 @@ use figures::Figures;
 use handcnc::background::compile::{Compiler, Finding};
 use handcnc::background::parameters::Parameters;
 use handcnc::foreground::alarm::Alarm;
-use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
+use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground, Memory};
 use handcnc::queue::Queue;
 use interp_core::block::Block;
 use interp_core::channel::{Report, State};
@@ -325,7 +325,8 @@ pub fn run_fitted(
     let (mut command_in, command_out) = queue.split();
     let mut commands = commands.iter().peekable();
     let mut cycle = 0_u64;
-    let mut foreground = Foreground::new(machine, position, block_out, command_out);
+    let mut memory = Memory::new();
+    let mut foreground = Foreground::new(machine, position, block_out, command_out, &mut memory);
     for (axis, table) in [(Axis::X, &fit.tables.x), (Axis::Z, &fit.tables.z)] {
         if let Some(table) = table {
             foreground.set_pitch_table(axis, table);

@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use handcnc::background::link::{Link, Snapshot, realtime};
-use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
+use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground, Memory};
 use handcnc::queue::{Producer, Queue};
 use interp_core::block::Block;
 use interp_core::channel::{Report, State};
@@ -90,7 +90,8 @@ fn run(listener: &TcpListener, fast: bool, settings: Settings, machine: &Machine
     let (commands, command_out) = commands.split();
     let start = parameters.start();
     let position = Lattice { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) };
-    let mut foreground = Foreground::new(machine, position, block_out, command_out);
+    let mut memory = Memory::new();
+    let mut foreground = Foreground::new(machine, position, block_out, command_out, &mut memory);
     let snapshot =
         Snapshot { state: State::Idle, position, speed: 0, line: 0, feed_override: 100, underruns: 0, alarm: None };
     let link = Link::new(parameters, *machine);

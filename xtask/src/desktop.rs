@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 use feature_editor::codes::{Detector, Format, Item};
 use handcnc::background::compile::{Compiler, Finding};
 use handcnc::background::parameters::Parameters;
-use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
+use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground, Memory};
 use handcnc::queue::Queue;
 use interp_core::block::{Block, Work};
 use interp_core::channel::State;
@@ -62,7 +62,8 @@ pub(crate) fn run(trial: &Trial, most: usize, take: &mut Take<'_>) -> Result<()>
     let (mut blocks, mut commands) = (Queue::<Block, BLOCK_QUEUE>::new(), Queue::<Command, COMMAND_QUEUE>::new());
     let (mut block_in, block_out) = blocks.split();
     let (_, command_out) = commands.split();
-    let mut foreground = Foreground::new(machine, position, block_out, command_out);
+    let mut memory = Memory::new();
+    let mut foreground = Foreground::new(machine, position, block_out, command_out, &mut memory);
     foreground.obey(Command::FeedOverride(parameters.feed_override()));
     foreground.obey(Command::OptionalStop(parameters.optional_stop()));
     foreground.obey(Command::Settle(parameters.operation(machine)));

@@ -69,7 +69,7 @@ impl Board {
     /// the others have more.
     const fn limits(self) -> Option<(u64, u64)> {
         match self {
-            Self::F411 => Some((256 * 1024, 48 * 1024)),
+            Self::F411 => Some((256 * 1024, 96 * 1024)),
             Self::F407 | Self::F446 | Self::Qemu => None,
         }
     }

@@ -1,5 +1,6 @@
 //! Drives other than time: which one turns the crank, their inputs, and what they keep from tick to tick.
 
+use super::Memory;
 use super::groove::Groove;
 use super::lookahead::{Overrides, pace};
 use super::thread_hold::ThreadHold;
@@ -14,6 +15,7 @@ use crate::drive::wheel::{Click, Wheel};
 use crate::drive::{BackEnd, Drive, DriveRefusal, Driven, Inputs, ThreadStage};
 use crate::math::to_u32;
 use crate::train::Train;
+use core::borrow::BorrowMut;
 
 /// The contour is not driven by the wheel's counts but pulled along, back or forth, at a speed.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -131,7 +133,7 @@ impl Active {
     }
 }
 
-impl<const N: usize> Channel<N> {
+impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Sets counts a turn of the spindle's encoder, 4 a line; `None` for no encoder. False, and nothing changes, while a
     /// cycle runs or where the number is out of [`Spindle::COUNTS`].
     pub fn set_encoder(&mut self, counts: Option<u32>) -> bool {
@@ -241,7 +243,7 @@ impl<const N: usize> Channel<N> {
     pub(super) fn turn_crank(&mut self, out: &mut impl Train) -> Option<Output> {
         self.crank.driven = Driven { locked: self.crank.driven.locked, ..Driven::NONE };
         let counts = core::mem::take(&mut self.crank.counts);
-        self.trail.slide(self.crank.back);
+        self.memory.borrow_mut().trail.slide(self.crank.back, &mut self.maker);
         if let Current::Dwell(clocks) = &mut self.current {
             if matches!(self.state, State::Running) {
                 *clocks = clocks.saturating_sub(u64::from(TICK_CLOCKS));
@@ -277,12 +279,12 @@ impl<const N: usize> Channel<N> {
     /// into.
     pub(super) fn other_work(&mut self) -> Option<Output> {
         let wheel = matches!(self.crank.drive, Drive::Wheel(_));
-        let other = self.ahead.next().is_some_and(|(block, _)| match block.work {
+        let other = self.memory.borrow().ahead.next().is_some_and(|(block, _)| match block.work {
             Work::Motion(_) => false,
             Work::End => !wheel,
             Work::Dwell(_) | Work::Output(_) | Work::Stop | Work::OptionalStop => true,
         });
-        if other && !self.trail.is_behind() && matches!(self.state, State::Running) {
+        if other && !self.memory.borrow().trail.is_behind() && matches!(self.state, State::Running) {
             self.crank.ungear();
             if let super::Next::Output(output) = self.next_block() {
                 return Some(output);

@@ -14,6 +14,7 @@
 //! comes over some ticks. Beyond the limits of speed and acceleration the tool lets go of the line, tells it, and falls in
 //! again. Where the path ends it brakes for the end and leaves the line there; at its start likewise.
 
+use super::Memory;
 use super::{Channel, Current, State};
 use crate::block::{Feed, Motion};
 use crate::drive::follower::{Bounds, approach};
@@ -22,6 +23,7 @@ use crate::drive::spindle::{COUNT, Foretold};
 use crate::drive::{Drive, Trouble};
 use crate::math::{root, to_u32};
 use crate::train::Train;
+use core::borrow::BorrowMut;
 
 /// Share of the distance between tool and line that is made up in a tick, as a shift.
 const SMOOTH: u32 = 2;
@@ -32,7 +34,7 @@ pub(super) const TURNING: u64 = COUNT.unsigned_abs() >> 4;
 /// Most turns of lead that the line is put back.
 const MOST_TURNS: u32 = 4096;
 
-impl<const N: usize> Channel<N> {
+impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Enters a motion where none is present. False where none follows.
     pub(super) fn begin_geared(&mut self) -> bool {
         if !matches!(self.state, State::Running) {
@@ -154,10 +156,11 @@ impl<const N: usize> Channel<N> {
         if is_far(room, advance.unsigned_abs(), motion.accel) {
             return advance;
         }
+        let Memory { ahead, trail } = self.memory.borrow();
         let exit = match (back, self.crank.in_thread) {
             (true, true) => 0,
-            (true, false) => self.trail.exit_back(),
-            (false, _) => self.trail.exit(&self.ahead, motion, false),
+            (true, false) => trail.exit_back(),
+            (false, _) => trail.exit(ahead, motion, false),
         };
         let rest = room.saturating_sub(self.crank.follower.advance().unsigned_abs());
         let most = approach(room, motion.accel).max(i64::from(root(motion.reachable(rest, exit))));

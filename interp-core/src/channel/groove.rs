@@ -4,10 +4,12 @@
 //! place when the spindle is at the groove's angle; wherever it begins, and whatever its lead.
 
 use super::Channel;
+use super::Memory;
 use crate::block::Motion;
 use crate::drive::gearing::Lead;
 use crate::drive::spindle::{ANGLE_BITS, Spindle};
 use crate::units::PulseSize;
+use core::borrow::BorrowMut;
 
 /// A groove.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -38,7 +40,7 @@ impl Groove {
     }
 }
 
-impl<const N: usize> Channel<N> {
+impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Threads meet this groove from now on; `None` for the index alone.
     pub const fn set_groove(&mut self, groove: Option<Groove>) {
         self.crank.groove = groove;

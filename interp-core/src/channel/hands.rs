@@ -12,6 +12,7 @@
 //!
 //! [`Machine::with_hands`]: crate::config::Machine::with_hands
 
+use super::Memory;
 use super::hand::{ENDLESS, Hand, beside};
 use super::{Channel, State};
 use crate::block::Speed;
@@ -20,6 +21,7 @@ use crate::drive::follower::Bounds;
 use crate::drive::wheel::Click;
 use crate::math::to_u32;
 use crate::units::{Axis, Lattice, PulseSize};
+use core::borrow::BorrowMut;
 
 /// All of a program's speed.
 const ALL: u32 = 1 << 16;
@@ -153,7 +155,7 @@ impl Hands {
     }
 }
 
-impl<const N: usize> Channel<N> {
+impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Whether the program may move in the tick to come.
     const fn may_move(&self) -> bool {
         self.speed > 0 || matches!(self.state, State::Running | State::Filling)

@@ -9,6 +9,7 @@
 //!
 //! Where the lead slows down for a joint it keeps that speed for a [margin](super::margins) on both sides.
 
+use super::Memory;
 use super::cruise::Cruise;
 use super::lookahead::smooth::{is_smoothed, most};
 use super::lookahead::{Lookahead, Overrides, pace};
@@ -19,6 +20,7 @@ use crate::config::TICK_CLOCKS;
 use crate::governor::Advance;
 use crate::math::to_u32;
 use crate::train::Train;
+use core::borrow::BorrowMut;
 
 /// Where the lead is.
 #[derive(Clone, Debug)]
@@ -71,13 +73,13 @@ fn ahead_of<'c, const N: usize>(current: &'c Current, ahead: &'c Lookahead<N>, b
     }
 }
 
-impl<const N: usize> Channel<N> {
+impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Whether a tick belongs to the lead and the tool that follows it, not to a block that stands still.
     pub(super) fn follows(&self) -> bool {
         match self.current {
             Current::Motion(ref active) => is_smoothed(&active.motion),
             Current::Dwell(_) => false,
-            Current::Nothing => !self.window.is_drained() || self.ahead.motion(0).is_some(),
+            Current::Nothing => !self.window.is_drained() || self.memory.borrow().ahead.motion(0).is_some(),
         }
     }
 
@@ -91,10 +93,10 @@ impl<const N: usize> Channel<N> {
             return;
         }
         let by = self.window.push(length);
-        let known = self.ahead.len();
+        let known = self.memory.borrow().ahead.len();
         // the tool never passes the lead, so there is a motion for all of it
         let _ = self.walk(by.cast_signed(), out);
-        let begun = known.wrapping_sub(self.ahead.len());
+        let begun = known.wrapping_sub(self.memory.borrow().ahead.len());
         self.lead.block = self.lead.block.saturating_sub(begun);
         self.speed = if self.window.is_drained() { 0 } else { to_u32(by).max(1) };
     }
@@ -102,11 +104,12 @@ impl<const N: usize> Channel<N> {
     /// Whether a block that comes now is too late to be planned with: the lead is so near the end of what is known that
     /// the margins of a joint there might not be kept.
     pub(super) fn is_late(&self) -> bool {
-        let Some(mut last) = ahead_of(&self.current, &self.ahead, self.lead.block) else { return false };
+        let ahead = &self.memory.borrow().ahead;
+        let Some(mut last) = ahead_of(&self.current, ahead, self.lead.block) else { return false };
         let mut left = last.length.saturating_sub(self.lead.done);
         let mut index = self.lead.block;
-        while index < self.ahead.len() {
-            let Some(motion) = self.ahead.motion(index) else { return false };
+        while index < ahead.len() {
+            let Some(motion) = ahead.motion(index) else { return false };
             last = motion;
             left = left.saturating_add(motion.length);
             index = index.wrapping_add(1);
@@ -121,7 +124,8 @@ impl<const N: usize> Channel<N> {
         let (mut clock, mut length) = (0_u32, 0_u64);
         while clock < TICK_CLOCKS {
             let lead = &mut self.lead;
-            let motion = ahead_of(&self.current, &self.ahead, lead.block);
+            let Memory { ahead, trail } = self.memory.borrow();
+            let motion = ahead_of(&self.current, ahead, lead.block);
             let Some(motion) = motion.filter(|motion| lead.done < motion.length) else {
                 if !self.pass_joint(runs && length == 0) {
                     break;
@@ -144,10 +148,10 @@ impl<const N: usize> Channel<N> {
                     break;
                 }
             }
-            let (exit, margins) = if lead.block == 0 && self.trail.stands_behind() {
+            let (exit, margins) = if lead.block == 0 && trail.stands_behind() {
                 (0, Margins::EMPTY)
             } else {
-                self.ahead.leave(lead.block, motion, ticks)
+                ahead.leave(lead.block, motion, ticks)
             };
             let calm = left.saturating_sub(margins.longest());
             let steady = lead.speed == target && clock == 0;
@@ -179,9 +183,10 @@ impl<const N: usize> Channel<N> {
     /// tool has arrived. False where it stays.
     fn pass_joint(&mut self, may: bool) -> bool {
         let lead = &mut self.lead;
-        let before = ahead_of(&self.current, &self.ahead, lead.block);
-        let next = self.ahead.motion(lead.block);
-        let stands = self.ahead.stands(lead.block) || lead.block == 0 && self.trail.stands_behind();
+        let Memory { ahead, trail } = self.memory.borrow();
+        let before = ahead_of(&self.current, ahead, lead.block);
+        let next = ahead.motion(lead.block);
+        let stands = ahead.stands(lead.block) || lead.block == 0 && trail.stands_behind();
         if stands || before.is_none() {
             lead.speed = 0;
         }

@@ -70,9 +70,9 @@ pub fn pace(motion: &Motion, overrides: Overrides) -> Speed {
 }
 
 impl<const N: usize> Lookahead<N> {
-    /// None known.
+    /// None known: all zero.
     pub const fn new() -> Self {
-        Self { blocks: Deque::new(), fresh: 0, overrides: Overrides::NONE }
+        Self { blocks: Deque::new(), fresh: 0, overrides: Overrides { feed: 0, rapid: 0 } }
     }
 
     /// Whether another block fits.

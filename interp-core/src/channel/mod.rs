@@ -18,6 +18,7 @@ mod hands;
 mod lead;
 pub mod lookahead;
 mod margins;
+mod memory;
 mod reach;
 mod retract;
 mod runner;
@@ -41,17 +42,19 @@ use crate::shaper::Shaper;
 use crate::times::Stretch;
 use crate::train::Train;
 use crate::units::{Axis, Lattice};
+use core::borrow::BorrowMut;
 use crank::Crank;
 pub use crank::Pull;
 use cruise::Cruise;
 use hands::Hands;
 use lead::Lead;
 use lookahead::smooth::is_smoothed;
-use lookahead::{Lookahead, Overrides, pace};
+use lookahead::{Overrides, pace};
+pub use memory::Memory;
 use runner::{Runner, Sink};
 use single::Single;
 use superposed::Superposed;
-use trail::Trail;
+use trail::maker::Maker;
 use window::Window;
 
 /// Blocks taken in one tick while a cycle fills the look-ahead.
@@ -155,11 +158,11 @@ enum Next {
     Output(Output),
 }
 
-/// One lathe's interpolator, with a look-ahead of `N` blocks.
-// what each tick needs stands before the blocks to come, whose size would put it out of an instruction's reach
+/// One lathe's interpolator, with a look-ahead of `N` blocks, and with a memory of its own or one that it is lent.
+// what each tick needs stands before the memory, whose size would put it out of an instruction's reach
 #[derive(Clone, Debug)]
 #[repr(C)]
-pub struct Channel<const N: usize> {
+pub struct Channel<const N: usize, M = Memory<N>> {
     state: State,
     optional_stop: bool,
     /// The end block was taken: no more come.
@@ -185,16 +188,25 @@ pub struct Channel<const N: usize> {
     hands: Hands,
     lead: Lead,
     window: Window,
-    ahead: Lookahead<N>,
-    trail: Trail,
+    maker: Maker,
+    memory: M,
 }
 
 impl<const N: usize> Channel<N> {
     /// A channel that stands at `position`.
     pub fn new(machine: &Machine, position: Lattice) -> Self {
+        Self::with_memory(machine, position, Memory::new())
+    }
+}
+
+impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
+    /// A channel that stands at `position` and keeps its blocks in `memory`, which it empties first.
+    // as a call it would pass over the stack once more
+    #[inline(always)]
+    pub fn with_memory(machine: &Machine, position: Lattice, mut memory: M) -> Self {
+        memory.borrow_mut().clear();
         Self {
             state: State::Idle,
-            ahead: Lookahead::new(),
             current: Current::Nothing,
             line: 0,
             speed: 0,
@@ -212,9 +224,10 @@ impl<const N: usize> Channel<N> {
             waited: 0,
             crank: Crank::of(machine),
             hands: Hands::new(machine),
-            trail: Trail::new(machine),
             lead: Lead::new(),
             window: Window::new(machine.smoothing),
+            maker: Maker::new(machine),
+            memory,
         }
     }
 
@@ -225,7 +238,7 @@ impl<const N: usize> Channel<N> {
                 self.complete = false;
                 self.closed = false;
                 // another path's motions are no way back
-                self.trail.clear(BackEnd::Start);
+                self.memory.borrow_mut().trail.clear(BackEnd::Start);
                 self.waited = 0;
                 self.single.pass_all();
                 self.state = State::Filling;
@@ -310,7 +323,7 @@ impl<const N: usize> Channel<N> {
             active.paced_at = Overrides::AT_LIMIT;
         }
         self.lead.repace();
-        self.ahead.set_feed(feed);
+        self.memory.borrow_mut().ahead.set_feed(feed);
     }
 
     /// Says where the tool is. False, and nothing changes, while anything moves.
@@ -334,7 +347,8 @@ impl<const N: usize> Channel<N> {
             self.crank.configure(machine);
             self.window = Window::new(machine.smoothing);
             self.lead = Lead::new();
-            self.trail.configure(machine);
+            self.memory.borrow_mut().trail.clear(BackEnd::Start);
+            self.maker = Maker::new(machine);
         }
         idle
     }
@@ -408,7 +422,7 @@ impl<const N: usize> Channel<N> {
 
     /// Whether the look-ahead has room for blocks that may still come.
     pub fn is_hungry(&self) -> bool {
-        !self.complete && self.ahead.has_room()
+        !self.complete && self.memory.borrow().ahead.has_room()
     }
 
     /// Clocks that pulses of a row stay high.
@@ -444,10 +458,13 @@ impl<const N: usize> Channel<N> {
         self.shaper.end_tick(out);
         if matches!(self.state, State::Filling) {
             let patient = self.waited < FILL_PATIENCE;
-            if self.closed && self.ahead.is_empty() {
+            if self.closed && self.memory.borrow().ahead.is_empty() {
                 self.line = 0;
                 self.state = State::Idle;
-            } else if self.complete || !self.ahead.has_room() || (!patient && !self.ahead.is_empty()) {
+            } else if self.complete
+                || !self.memory.borrow().ahead.has_room()
+                || (!patient && !self.memory.borrow().ahead.is_empty())
+            {
                 self.state = State::Running;
             } else if !patient {
                 self.line = 0;
@@ -486,7 +503,7 @@ impl<const N: usize> Channel<N> {
             return;
         }
         let mut taken = 0_usize;
-        while !self.complete && self.ahead.has_room() && taken < FILL_PER_TICK {
+        while !self.complete && self.memory.borrow().ahead.has_room() && taken < FILL_PER_TICK {
             let Some(block) = source() else {
                 self.complete = self.closed;
                 if !self.closed && !matches!(self.state, State::Filling) {
@@ -496,28 +513,29 @@ impl<const N: usize> Channel<N> {
             };
             self.complete = matches!(block.work, Work::End);
             let late = self.window.ticks() > 0 && taken == 0 && self.is_late();
-            self.ahead.push(block);
+            self.memory.borrow_mut().ahead.push(block);
             if late || self.single.is_on() {
-                self.ahead.stand_last();
+                self.memory.borrow_mut().ahead.stand_last();
             }
             taken = taken.wrapping_add(1);
         }
         self.waited = if taken > 0 { 0 } else { self.waited.saturating_add(1) };
+        let Memory { ahead, trail } = self.memory.borrow_mut();
         let active = match &self.current {
             // what comes follows the motion begun last, wherever the tool is
-            _ if self.trail.is_behind() => match self.trail.newest() {
-                Some(newest) => Some(newest).filter(|_| !self.trail.stands_behind()),
+            _ if trail.is_behind() => match trail.newest() {
+                Some(newest) => Some(newest).filter(|_| !trail.stands_behind()),
                 // it is planned for when the tool comes near
                 None => return,
             },
-            _ if self.trail.stands_behind() => None,
+            _ if trail.stands_behind() => None,
             Current::Motion(active) => Some(&active.motion),
             Current::Nothing | Current::Dwell(_) => None,
         };
         let planned = self.crank.planned_with(self.overrides);
         match (self.window.ticks(), self.crank.drive) {
-            (0, _) | (_, Drive::Spindle(_) | Drive::Wheel(_)) => self.ahead.plan(active, planned),
-            (ticks, Drive::Time) => self.ahead.plan_smooth(active, planned, ticks),
+            (0, _) | (_, Drive::Spindle(_) | Drive::Wheel(_)) => ahead.plan(active, planned),
+            (ticks, Drive::Time) => ahead.plan_smooth(active, planned, ticks),
         }
     }
 
@@ -526,8 +544,9 @@ impl<const N: usize> Channel<N> {
         if self.crank.turns {
             return self.turn_crank(out);
         }
-        if self.trail.is_behind() {
-            self.trail.slide(false);
+        let trail = &mut self.memory.borrow_mut().trail;
+        if trail.is_behind() {
+            trail.slide(false, &mut self.maker);
         } else if self.window.ticks() > 0 && self.follows() {
             if self.window.is_drained() && matches!(self.current, Current::Nothing) && self.stops_single() {
                 self.state = State::Stopped;
@@ -579,12 +598,13 @@ impl<const N: usize> Channel<N> {
         if !matches!(self.state, State::Running) && self.speed == 0 {
             return Next::Stands;
         }
-        if self.trail.is_behind() {
+        if self.memory.borrow().trail.is_behind() {
             // what is not ready yet is waited for
-            return if self.trail.go_on() && self.enter_again() { Next::Goes } else { Next::Stands };
+            let goes = self.memory.borrow_mut().trail.go_on();
+            return if goes && self.enter_again() { Next::Goes } else { Next::Stands };
         }
         // the tool is where it should be before the program stands; and only a cycle moves what is added
-        let moves = self.ahead.next().is_some_and(|(block, _)| lookahead::as_motion(block).is_some());
+        let moves = self.memory.borrow().ahead.next().is_some_and(|(block, _)| lookahead::as_motion(block).is_some());
         if !moves && !self.settled() {
             return Next::Stands;
         }
@@ -592,7 +612,8 @@ impl<const N: usize> Channel<N> {
             self.state = State::Stopped;
             return Next::Goes;
         }
-        let Some((block, entry)) = self.ahead.next() else {
+        let Memory { ahead, trail } = self.memory.borrow_mut();
+        let Some((block, entry)) = ahead.next() else {
             self.state = State::Filling;
             return Next::Stands;
         };
@@ -613,8 +634,8 @@ impl<const N: usize> Channel<N> {
                     self.speed.min(motion.joint).min(motion.limit)
                 };
                 self.current = Current::Motion(Active::new(motion, self.overrides, self.position));
-                self.trail.push(block.line, motion);
-                self.ahead.skip();
+                trail.push(block.line, motion);
+                ahead.skip();
                 self.begun();
                 return Next::Goes;
             }
@@ -622,8 +643,8 @@ impl<const N: usize> Channel<N> {
                 self.current = Current::Dwell(u64::from(ticks).wrapping_mul(u64::from(TICK_CLOCKS)));
             }
             Work::Output(output) => {
-                self.trail.clear(BackEnd::Output);
-                self.ahead.skip();
+                trail.clear(BackEnd::Output);
+                ahead.skip();
                 return Next::Output(output);
             }
             Work::Stop => self.state = State::Stopped,
@@ -632,18 +653,17 @@ impl<const N: usize> Channel<N> {
             Work::End => {
                 self.state = State::Ended;
                 self.line = 0;
-                self.trail.clear(BackEnd::Start);
+                trail.clear(BackEnd::Start);
             }
         }
-        self.trail.stand();
-        self.ahead.skip();
+        trail.stand();
+        ahead.skip();
         Next::Goes
     }
 
     /// Forgets all blocks after a reset.
     fn forget(&mut self) {
-        self.ahead.clear();
-        self.trail.clear(BackEnd::Start);
+        self.memory.borrow_mut().clear();
         // X stands where a thread has left it
         self.position.x = self.position.x.wrapping_add(self.crank.thread.take());
         self.crank.stand();
@@ -660,6 +680,7 @@ impl<const N: usize> Channel<N> {
         let holding = !matches!(self.state, State::Running);
         // an S law takes over where the tool is in the motion begun last, from standstill
         let smooth = self.window.ticks() > 0;
+        let Memory { ahead, trail } = self.memory.borrow();
         let Current::Motion(active) = &mut self.current else { return None };
         if active.paced_at != self.overrides {
             active.repace(self.overrides, &self.crank);
@@ -681,10 +702,10 @@ impl<const N: usize> Channel<N> {
         let advance = if steady && active.cruise.holds(target, left) {
             Advance { length: u64::from(target), clocks: TICK_CLOCKS, speed: target, done: false }
         } else {
-            let exit = if self.single.stops(&self.ahead, self.line) {
+            let exit = if self.single.stops(ahead, self.line) {
                 square(active.motion.stop)
             } else {
-                self.trail.exit(&self.ahead, &active.motion, smooth)
+                trail.exit(ahead, &active.motion, smooth)
             };
             let budget = TICK_CLOCKS.wrapping_sub(clock);
             let advance = active.motion.advance(self.speed, left, exit, target, budget);
@@ -701,8 +722,8 @@ impl<const N: usize> Channel<N> {
         active.runner.advance(active.done, stretch, &mut sink);
         if advance.done {
             active.runner.finish(clock.wrapping_add(advance.clocks), &mut sink);
-            let stops = self.single.stops(&self.ahead, self.line) && self.speed <= active.motion.stop;
-            let goes_on = self.trail.runs_on(smooth).unwrap_or_else(|| self.ahead.continues()) && !stops;
+            let stops = self.single.stops(ahead, self.line) && self.speed <= active.motion.stop;
+            let goes_on = trail.runs_on(smooth).unwrap_or_else(|| ahead.continues()) && !stops;
             self.current = Current::Nothing;
             if !goes_on {
                 self.speed = 0;

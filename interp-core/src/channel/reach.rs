@@ -1,8 +1,9 @@
 //! What the path leads through before it could stand: for limits that it must not pass.
 
-use super::{Active, Channel, Current, lookahead};
+use super::{Active, Channel, Current, Memory, lookahead};
 use crate::block::Motion;
 use crate::units::Lattice;
+use core::borrow::BorrowMut;
 
 /// Moves from one lattice point to another.
 const fn plus(at: Lattice, (x, z): (i32, i32)) -> Lattice {
@@ -21,7 +22,7 @@ fn extent(from: Lattice, motion: &Motion) -> (Lattice, Lattice) {
     (plus(from, least), plus(from, most))
 }
 
-impl<const N: usize> Channel<N> {
+impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Tells `see` of each motion that the path is in or comes to before it could stand, the way that it goes, the least and the
     /// greatest place, in the program's pulses: of the motion as a whole.
     pub fn extents(&self, mut see: impl FnMut(Lattice, Lattice)) {
@@ -29,6 +30,7 @@ impl<const N: usize> Channel<N> {
             let (least, most) = extent(from, motion);
             see(least, most);
         };
+        let Memory { ahead, trail } = self.memory.borrow();
         let (back, far) = (self.crank.back, self.braking());
         let (mut begins, mut ends) = (self.position, self.position);
         if let Current::Motion(Active { from, motion, .. }) = &self.current {
@@ -37,7 +39,7 @@ impl<const N: usize> Channel<N> {
         }
         let mut way = self.room(back);
         if back {
-            for earlier in self.trail.earlier() {
+            for earlier in trail.earlier() {
                 if way > far {
                     return;
                 }
@@ -47,9 +49,8 @@ impl<const N: usize> Channel<N> {
             }
             return;
         }
-        let whole = self.trail.is_whole();
-        let ahead = self.ahead.blocks().take_while(|_| whole).map_while(lookahead::as_motion);
-        for later in self.trail.later().chain(ahead) {
+        let ahead = ahead.blocks().take_while(|_| trail.is_whole()).map_while(lookahead::as_motion);
+        for later in trail.later().chain(ahead) {
             if way > far {
                 return;
             }

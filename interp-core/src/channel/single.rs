@@ -4,7 +4,9 @@
 //! its line when single block is switched on goes on into the next.
 
 use super::Channel;
+use super::Memory;
 use super::lookahead::Lookahead;
+use core::borrow::BorrowMut;
 
 /// Single block.
 #[derive(Copy, Clone, Debug)]
@@ -36,12 +38,12 @@ impl Single {
     }
 }
 
-impl<const N: usize> Channel<N> {
+impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Switches single block on or off. It acts from the next line on.
     pub fn set_single_block(&mut self, on: bool) {
         if on && !self.single.on {
             self.single.passed = self.line;
-            self.ahead.stand_lines(self.line);
+            self.memory.borrow_mut().ahead.stand_lines(self.line);
         }
         self.single.on = on;
     }
@@ -53,19 +55,19 @@ impl<const N: usize> Channel<N> {
 
     /// Cycle start lets the next line pass.
     pub(super) fn pass_single(&mut self) {
-        if let Some((block, _)) = self.ahead.next() {
+        if let Some((block, _)) = self.memory.borrow().ahead.next() {
             self.single.passed = block.line;
         }
     }
 
     /// Whether the block that comes next waits for cycle start.
     pub(super) fn stops_single(&mut self) -> bool {
-        let Some((block, _)) = self.ahead.next() else { return false };
+        let Some((block, _)) = self.memory.borrow().ahead.next() else { return false };
         let line = block.line;
         if self.single.passed == 0 {
             self.single.passed = line;
         }
         let ends = matches!(block.work, crate::block::Work::End);
-        self.single.on && line != self.single.passed && !ends && !self.trail.is_behind()
+        self.single.on && line != self.single.passed && !ends && !self.memory.borrow().trail.is_behind()
     }
 }

@@ -17,6 +17,7 @@
 //! A hold acts at the thread's end instead where X is not to be pulled out, where X leads the thread, and where the pass
 //! has more blocks than the way back is known for.
 
+use super::Memory;
 use super::geared::TURNING;
 use super::retract::Retract;
 use super::{Active, Channel, Current, State};
@@ -32,6 +33,7 @@ use crate::math::{scale, to_i64, to_u32};
 use crate::threading::Threading;
 use crate::train::Train;
 use crate::units::PulseSize;
+use core::borrow::BorrowMut;
 
 /// Ticks that a spindle is waited for that does not turn.
 const PATIENCE: u32 = 5_000;
@@ -267,7 +269,7 @@ impl Crank {
     }
 }
 
-impl<const N: usize> Channel<N> {
+impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// What is wrong with the spindle, where that ended a cut or a wait: from then on until cycle start or reset.
     pub const fn fault(&self) -> Option<Trouble> {
         self.crank.thread.fault

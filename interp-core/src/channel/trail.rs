@@ -1,6 +1,6 @@
 //! Where the path led: the motions begun since the last output, so that drives which go back can.
 //!
-//! Every motion begun is noted in a [ring](ring), 32 bytes of which it can be made again. Around the tool a **window** of
+//! Every motion begun is noted in a [history], 32 bytes of which it can be made again. Around the tool a **window** of
 //! motions stands ready; it slides along the history as the tool goes back and forward again. Motions that come into it
 //! are made again, one at a time and a step of a few thousand instructions a tick: a line takes two steps, an arc about
 //! fifteen. Where the window ends the path is planned to stand, so a tool that comes there before the next motion is
@@ -9,21 +9,21 @@
 //! The way back ends where something stands between two motions that can't be undone ([`BackEnd`]). Dwells and programmed
 //! stops can: the path only stands there for a moment.
 
+mod history;
+pub(super) mod maker;
 mod record;
-mod ring;
 #[cfg(test)]
 mod tests;
 
 use super::lookahead::Lookahead;
-use crate::block::again::{Again, Made, Outline};
-use crate::block::{Builder, Motion};
-use crate::config::Machine;
+use crate::block::Motion;
+use crate::block::again::Outline;
 use crate::drive::BackEnd;
 use crate::governor::square;
-use crate::units::Point;
 use heapless::Deque;
+use history::History;
+use maker::Maker;
 use record::Kept;
-use ring::Ring;
 
 /// Motions that stand ready. Every one costs its size in RAM.
 const WINDOW: usize = 12;
@@ -42,50 +42,32 @@ struct Trod {
     motion: Motion,
 }
 
-/// A motion that is being made again.
-#[derive(Clone, Debug)]
-struct Work {
-    place: u32,
-    line: u32,
-    apart: bool,
-    again: Again,
-}
-
 /// The motions begun last.
 #[derive(Clone, Debug)]
 pub(super) struct Trail {
     /// How many motions of the window are newer than the one that the tool is in, or at whose end it is.
     behind: usize,
-    /// The window reaches to the motion begun last.
-    whole: bool,
+    /// The window does not reach to the motion begun last.
+    short: bool,
     /// The path has stood since the last motion.
     apart: bool,
     /// Why the way back ends before the oldest motion kept.
     end: BackEnd,
     window: Deque<Trod, WINDOW>,
-    work: Option<Work>,
-    builder: Builder,
-    ring: Ring,
+    history: History,
 }
 
 impl Trail {
-    pub(super) fn new(machine: &Machine) -> Self {
+    /// Of no motion: all zero.
+    pub(super) const fn new() -> Self {
         Self {
             behind: 0,
-            whole: true,
+            short: false,
             apart: false,
             end: BackEnd::Start,
             window: Deque::new(),
-            work: None,
-            builder: Builder::new(machine, Point::default()),
-            ring: Ring::new(),
+            history: History::new(),
         }
-    }
-
-    /// Works with other figures from now on, and forgets all.
-    pub(super) fn configure(&mut self, machine: &Machine) {
-        self.builder = Builder::new(machine, Point::default());
-        self.clear(BackEnd::Start);
     }
 
     /// Notes a motion that begins.
@@ -95,7 +77,7 @@ impl Trail {
             self.clear(BackEnd::Thread);
         }
         let apart = core::mem::take(&mut self.apart);
-        let (place, full) = self.ring.push(&Kept { line, apart, outline: Outline::of(motion) });
+        let (place, full) = self.history.push(&Kept { line, apart, outline: Outline::of(motion) });
         if full {
             self.end = BackEnd::Full;
         }
@@ -119,21 +101,21 @@ impl Trail {
 
     /// Forgets all: the way back ends here.
     pub(super) fn clear(&mut self, end: BackEnd) {
-        self.ring.clear();
+        self.history.clear();
         self.window.clear();
-        (self.behind, self.whole, self.apart) = (0, true, false);
-        (self.work, self.end) = (None, end);
+        (self.behind, self.short, self.apart) = (0, false, false);
+        self.end = end;
     }
 
     /// Whether the tool is back in an earlier motion, or at its end.
     #[inline]
     pub(super) const fn is_behind(&self) -> bool {
-        self.behind > 0 || !self.whole
+        self.behind > 0 || self.short
     }
 
     /// The motion begun last; `None` where there is none, and where the tool is so far back that it is not at hand.
     pub(super) fn newest(&self) -> Option<&Motion> {
-        self.window.back().filter(|_| self.whole).map(|last| &last.motion)
+        self.window.back().filter(|_| !self.short).map(|last| &last.motion)
     }
 
     /// The motion so many before the newest of the window.
@@ -174,7 +156,7 @@ impl Trail {
 
     /// Whether all motions that were begun before lie behind the tool's up to the look-ahead's: else the path stands before it.
     pub(super) const fn is_whole(&self) -> bool {
-        self.whole
+        !self.short
     }
 
     /// Goes to the motion before. False where there is none, or it is not ready.
@@ -206,8 +188,8 @@ impl Trail {
     }
 
     /// Whether a motion is the newest, and that is begun from standstill.
-    const fn is_rest(&self, trod: &Trod, rest: bool) -> bool {
-        rest && trod.place == self.ring.newest()
+    fn is_rest(&self, trod: &Trod, rest: bool) -> bool {
+        rest && trod.place == self.history.newest()
     }
 
     /// Why the way back ends at the start of the motion that the tool is in; `None` where it does not, or only until the one
@@ -217,22 +199,22 @@ impl Trail {
         if self.previous().is_some() {
             return None;
         }
-        match self.ring.before(here.place) {
+        match self.history.before(here.place) {
             None => Some(self.end),
-            Some(before) if !self.ring.can_be_made(before) || self.is_held() => Some(BackEnd::Curve),
+            Some(before) if !self.history.can_be_made(before) || self.is_held() => Some(BackEnd::Curve),
             Some(_) => None,
         }
     }
 
     /// Whether the window can't slide back, as its newest motion could not be made again.
     fn is_held(&self) -> bool {
-        self.window.is_full() && self.window.back().is_some_and(|last| !self.ring.can_be_made(last.place))
+        self.window.is_full() && self.window.back().is_some_and(|last| !self.history.can_be_made(last.place))
     }
 
     /// Squared speed at which the present motion has to end going forward; with `rest` the newest is begun from standstill.
     pub(super) fn exit<const N: usize>(&self, ahead: &Lookahead<N>, motion: &Motion, rest: bool) -> u64 {
         let Some(newest) = self.before_newest(0) else { return ahead.exit(motion) };
-        let runs_on = self.whole && !self.apart;
+        let runs_on = !self.short && !self.apart;
         let mut exit = if runs_on { ahead.exit(&newest.motion) } else { square(newest.motion.stop) };
         for behind in 0..self.behind {
             let Some(later) = self.before_newest(behind) else { break };
@@ -266,26 +248,10 @@ impl Trail {
     }
 
     /// A tick's step toward a window that reaches far enough both ways, first where the tool goes to.
-    pub(super) fn slide(&mut self, back: bool) {
-        let Some(place) = self.wanted(back) else {
-            self.work = None;
-            return;
-        };
-        if self.work.as_ref().is_none_or(|work| work.place != place) {
-            self.work = self.ring.get(place).and_then(|Kept { line, apart, outline }| {
-                Some(Work { place, line, apart, again: Again::new(outline?)? })
-            });
-        }
-        let Some(work) = &mut self.work else { return };
-        match work.again.step(&self.builder) {
-            Made::More => {}
-            // what was made once can be made again
-            Made::Nothing => self.work = None,
-            Made::Motion(motion) => {
-                let trod = Trod { place, line: work.line, apart: work.apart, motion };
-                self.work = None;
-                self.insert(trod);
-            }
+    pub(super) fn slide(&mut self, back: bool, maker: &mut Maker) {
+        let Some(place) = self.wanted(back) else { return };
+        if let Some(trod) = maker.step(place, &self.history) {
+            self.insert(trod);
         }
     }
 
@@ -294,8 +260,9 @@ impl Trail {
         let (front, last) = (self.window.front()?, self.window.back()?);
         let (older, newer) = (self.window.len().saturating_sub(self.behind.wrapping_add(1)), self.behind);
         let (most_older, most_newer) = if back { (TOWARD, FROM) } else { (FROM, TOWARD) };
-        let before = || self.ring.before(front.place).filter(|place| self.ring.can_be_made(*place) && !self.is_held());
-        let after = || self.ring.after(last.place);
+        let before =
+            || self.history.before(front.place).filter(|place| self.history.can_be_made(*place) && !self.is_held());
+        let after = || self.history.after(last.place);
         let older = || if older < most_older { before() } else { None };
         let newer = || if newer < most_newer { after() } else { None };
         if back { older().or_else(newer) } else { newer().or_else(older) }
@@ -303,20 +270,20 @@ impl Trail {
 
     /// Puts a motion at the window's end; where it is full the farthest one on the other side makes room.
     fn insert(&mut self, trod: Trod) {
-        let older = self.window.front().is_some_and(|front| self.ring.before(front.place) == Some(trod.place));
-        let newer = self.window.back().is_some_and(|last| self.ring.after(last.place) == Some(trod.place));
+        let older = self.window.front().is_some_and(|front| self.history.before(front.place) == Some(trod.place));
+        let newer = self.window.back().is_some_and(|last| self.history.after(last.place) == Some(trod.place));
         if older {
             if self.window.is_full() {
                 let _ = self.window.pop_back();
                 self.behind = self.behind.saturating_sub(1);
-                self.whole = false;
+                self.short = true;
             }
             let _ = self.window.push_front(trod);
         } else if newer {
             if self.window.is_full() {
                 let _ = self.window.pop_front();
             }
-            self.whole = trod.place == self.ring.newest();
+            self.short = trod.place != self.history.newest();
             let _ = self.window.push_back(trod);
             self.behind = self.behind.wrapping_add(1);
         }

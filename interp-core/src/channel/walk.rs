@@ -6,6 +6,7 @@
 //! blocks that it leads through, each with the part of the tick that its length has in the whole. Backward it leads over
 //! joints into the motions of the [trail](super::trail), and ends exactly at its start.
 
+use super::Memory;
 use super::lead::Lead;
 use super::lookahead::Overrides;
 use super::runner::{Runner, Sink, share};
@@ -15,6 +16,7 @@ use crate::config::{FRACTION_BITS, TICK_CLOCKS};
 use crate::times::Stretch;
 use crate::train::Train;
 use crate::units::Lattice;
+use core::borrow::BorrowMut;
 
 /// What is added to a length before its steps are made: the timeline rounds down, by up to 2 nm where a curve is 2 m
 /// long, and a wheel stops on lattice lines, whose steps are to be made then.
@@ -36,7 +38,7 @@ impl Active {
     }
 }
 
-impl<const N: usize> Channel<N> {
+impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Moves by `by` (nm, 12 fraction bits; below 0 back) during the whole tick, evenly. Returns what is left of it where
     /// the path ends; it ends there exactly.
     pub(super) fn walk(&mut self, by: i64, out: &mut impl Train) -> i64 {
@@ -89,9 +91,11 @@ impl<const N: usize> Channel<N> {
         }
         match &self.current {
             Current::Dwell(_) => false,
-            Current::Motion(_) => back && self.trail.go_back() && self.enter_from_behind(),
+            Current::Motion(_) => back && self.memory.borrow_mut().trail.go_back() && self.enter_from_behind(),
             Current::Nothing if back => self.enter_from_behind(),
-            Current::Nothing if self.trail.is_behind() => self.trail.go_on() && self.enter_again(),
+            Current::Nothing if self.memory.borrow().trail.is_behind() => {
+                self.memory.borrow_mut().trail.go_on() && self.enter_again()
+            }
             Current::Nothing => self.begin_motion(),
         }
     }
@@ -99,23 +103,24 @@ impl<const N: usize> Channel<N> {
     /// Begins the next block where it is a motion. Threads have a drive of their own: it is not walked on into one, nor
     /// out of one.
     fn begin_motion(&mut self) -> bool {
-        let Some((block, _)) = self.ahead.next() else { return false };
+        let Memory { ahead, trail } = self.memory.borrow_mut();
+        let Some((block, _)) = ahead.next() else { return false };
         let Work::Motion(ref motion) = block.work else { return false };
         let (thread, in_thread) = (motion.feed.is_thread(), self.crank.in_thread);
         if in_thread && !thread {
             return false;
         }
         self.line = block.line;
-        self.trail.push(block.line, motion);
+        trail.push(block.line, motion);
         self.current = Current::Motion(Active::new(motion, self.overrides, self.position));
-        self.ahead.skip();
+        ahead.skip();
         self.begun();
         thread == in_thread
     }
 
     /// Enters the trail's present motion from its end. What is a thread is not gone back into.
     fn enter_from_behind(&mut self) -> bool {
-        let Some((line, motion)) = self.trail.here() else { return false };
+        let Some((line, motion)) = self.memory.borrow().trail.here() else { return false };
         if motion.feed.is_thread() && !self.crank.in_thread {
             return false;
         }
@@ -126,7 +131,7 @@ impl<const N: usize> Channel<N> {
 
     /// Enters the trail's present motion from its start.
     pub(super) fn enter_again(&mut self) -> bool {
-        let Some((line, motion)) = self.trail.here() else { return false };
+        let Some((line, motion)) = self.memory.borrow().trail.here() else { return false };
         self.current = Current::Motion(Active::new(motion, self.overrides, self.position));
         self.line = line;
         self.lead = Lead::new();

@@ -9,6 +9,7 @@
 //!
 //! It sets off with the speed of one tick's acceleration, not with the jump that motors allow: a wheel is turned gently.
 
+use super::Memory;
 use super::trail::Trail;
 use super::{Channel, Current, Pull, State};
 use crate::block::{Motion, Output, Speed};
@@ -19,8 +20,9 @@ use crate::governor::square;
 use crate::math::root;
 use crate::times::Stretch;
 use crate::train::Train;
+use core::borrow::BorrowMut;
 
-impl<const N: usize> Channel<N> {
+impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// A tick of the wheel.
     pub(super) fn turn_wheel(&mut self, click: Click, counts: i16, out: &mut impl Train) -> Option<Output> {
         let travel = i64::from(self.speed);
@@ -82,13 +84,14 @@ impl<const N: usize> Channel<N> {
 
     /// Why the way back ends here.
     fn end_of_way_back(&self) -> Option<BackEnd> {
-        let thread = self.trail.here().is_some_and(|(_, motion)| motion.feed.is_thread());
-        if thread && !self.crank.in_thread { Some(BackEnd::Thread) } else { self.trail.end() }
+        let trail = &self.memory.borrow().trail;
+        let thread = trail.here().is_some_and(|(_, motion)| motion.feed.is_thread());
+        if thread && !self.crank.in_thread { Some(BackEnd::Thread) } else { trail.end() }
     }
 
     /// Pushed on where no motion follows: other work is done, else what is left is dropped.
     fn end_of_path(&mut self, click: Click) -> Option<Output> {
-        if self.trail.is_behind() {
+        if self.memory.borrow().trail.is_behind() {
             return None;
         }
         let output = self.other_work();
@@ -107,13 +110,14 @@ impl<const N: usize> Channel<N> {
 
     /// The motion that follows in a sense.
     pub(super) fn neighbour(&self, back: bool) -> Option<&Motion> {
+        let Memory { ahead, trail } = self.memory.borrow();
         if back {
-            return self.trail.previous();
+            return trail.previous();
         }
-        if self.trail.is_behind() {
-            return self.trail.next();
+        if trail.is_behind() {
+            return trail.next();
         }
-        self.ahead.next().and_then(|(block, _)| super::lookahead::as_motion(block))
+        ahead.next().and_then(|(block, _)| super::lookahead::as_motion(block))
     }
 
     /// Moves inside the present motion from `clock` on; the clocks used, or `None` where it stands for the rest of the tick.
@@ -122,7 +126,8 @@ impl<const N: usize> Channel<N> {
         let room = self.room(back);
         let Current::Motion(active) = &self.current else { return None };
         let motion = &active.motion;
-        let mut exit = if back { self.trail.exit_back() } else { self.trail.exit(&self.ahead, motion, false) };
+        let Memory { ahead, trail } = self.memory.borrow();
+        let mut exit = if back { trail.exit_back() } else { trail.exit(ahead, motion, false) };
         let to_go = self.crank.wheel.to_go();
         let asked = u64::try_from(if back { to_go.wrapping_neg() } else { to_go }).unwrap_or(0);
         let mut left = room;
@@ -136,7 +141,7 @@ impl<const N: usize> Channel<N> {
         let target = if stops { self.hands.cap(pace, motion.limit) } else { 0 };
         if !stops {
             left = room;
-            exit = if back { self.trail.exit_back() } else { self.trail.exit(&self.ahead, motion, false) };
+            exit = if back { trail.exit_back() } else { trail.exit(ahead, motion, false) };
             if self.speed <= motion.accel {
                 self.speed = 0;
                 return None;
@@ -159,7 +164,7 @@ impl<const N: usize> Channel<N> {
     fn over_joint(&mut self, back: bool) {
         let border = |trail: &Trail, motion: &Motion| if trail.stands_before() { 0 } else { motion.joint };
         let joint = match &self.current {
-            Current::Motion(active) => border(&self.trail, &active.motion),
+            Current::Motion(active) => border(&self.memory.borrow().trail, &active.motion),
             Current::Nothing | Current::Dwell(_) => crate::block::Speed::MAX,
         };
         if self.crank.wheel.to_go() == 0 || self.room(back) > 0 || !self.enter(back) {
@@ -167,7 +172,7 @@ impl<const N: usize> Channel<N> {
             return;
         }
         let Current::Motion(active) = &self.current else { return };
-        let joint = if back { joint } else { border(&self.trail, &active.motion) };
+        let joint = if back { joint } else { border(&self.memory.borrow().trail, &active.motion) };
         self.speed = self.speed.min(joint).min(active.motion.limit);
     }
 }

@@ -67,7 +67,7 @@ impl Bench {
             Snapshot { state: State::Idle, position, speed: 0, line: 0, feed_override: 100, underruns: 0, alarm: None };
         Self {
             link: Link::new(parameters, machine),
-            foreground: Foreground::new(&machine, position, block_out, command_out),
+            foreground: Foreground::new(&machine, position, block_out, command_out, Box::leak(Box::default())),
             blocks,
             commands,
             snapshot,

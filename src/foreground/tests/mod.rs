@@ -69,7 +69,8 @@ impl Bench {
         let blocks = Box::leak(Box::new(Queue::<Block, BLOCK_QUEUE>::new()));
         let commands = Box::leak(Box::new(Queue::<Command, COMMAND_QUEUE>::new()));
         let ((blocks, block_out), (_, command_out)) = (blocks.split(), commands.split());
-        let mut foreground = Foreground::new(&machine, Lattice::default(), block_out, command_out);
+        let memory = Box::leak(Box::default());
+        let mut foreground = Foreground::new(&machine, Lattice::default(), block_out, command_out, memory);
         foreground.request(Command::Settle(parameters.operation(&machine))).unwrap();
         foreground.set_encoder(Some(4096));
         let (inputs, levels) = (Inputs::NONE, interp_core::train::Levels::LOW);

@@ -6,7 +6,7 @@ use handcnc::foreground::alarm::Faults;
 use handcnc::foreground::kept::Kept;
 use handcnc::foreground::mode::Mode;
 use handcnc::foreground::shown::Shown;
-use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
+use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground, Memory};
 use handcnc::queue::Queue;
 use indicatif::ProgressBar;
 use interp_core::block::Block;
@@ -161,9 +161,9 @@ impl Control {
         let mut blocks = Queue::<Block, BLOCK_QUEUE>::new();
         let mut commands = Queue::<Command, COMMAND_QUEUE>::new();
         let ((mut block_in, block_out), (_, command_out)) = (blocks.split(), commands.split());
-        let start = self.watch.position();
-        let mut foreground =
-            Foreground::new(&self.background.machine, Lattice { x: start.x, z: start.z }, block_out, command_out);
+        let (start, mut memory) = (self.watch.position(), Memory::new());
+        let at = Lattice { x: start.x, z: start.z };
+        let mut foreground = Foreground::new(&self.background.machine, at, block_out, command_out, &mut memory);
         if let Some(kept) = kept {
             foreground.restore(kept);
         }
@@ -348,5 +348,5 @@ impl Control {
 /// What is to be seen of a lathe before it is switched on.
 pub(super) fn at_first(machine: &Machine, at: Lattice) -> Shown {
     let (mut blocks, mut commands) = (Queue::<Block, 2>::new(), Queue::<Command, 2>::new());
-    Foreground::new(machine, at, blocks.split().1, commands.split().1).shown()
+    Foreground::new(machine, at, blocks.split().1, commands.split().1, &mut Memory::new()).shown()
 }

@@ -2,11 +2,12 @@
 extern crate std;
 use super::record::{Kept, Slot};
 use super::*;
-use crate::block::{Pace, Path};
-use crate::config::{AxisConfig, Config};
+use crate::block::again::{Again, Made};
+use crate::block::{Builder, Pace, Path};
+use crate::config::{AxisConfig, Config, Machine};
 use crate::curve::method::Method;
 use crate::drive::gearing::Lead;
-use crate::units::{Feedrate, Length, PulseSize, Sense};
+use crate::units::{Feedrate, Length, Point, PulseSize, Sense};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use std::vec::Vec;

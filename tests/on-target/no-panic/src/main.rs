@@ -21,7 +21,7 @@ mod image {
     use handcnc::foreground::panel::{Contact, Panel, Turned, Wiring};
     use handcnc::foreground::rehearsal::Rehearsal;
     use handcnc::foreground::train_queue::TrainQueue;
-    use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
+    use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground, Memory};
     use handcnc::queue::Queue;
     use interp_core::block::Block;
     use interp_core::units::Lattice;
@@ -63,7 +63,8 @@ mod image {
         let (bytes_in, mut bytes_out) = bytes.split();
         let (realtime_in, mut realtime_out) = realtime.split();
         let position = Lattice { x: black_box(0), z: black_box(0) };
-        let mut foreground = Foreground::new(&machine, position, blocks_out, commands_out);
+        let mut memory = Memory::new();
+        let mut foreground = Foreground::new(&machine, position, blocks_out, commands_out, &mut memory);
         let mut link = Link::new(parameters, machine);
         link.banner(&mut Out);
         let status = Status::new();

@@ -13,7 +13,7 @@ use handcnc::foreground::kept::Kept;
 use handcnc::foreground::mode::Mode;
 use handcnc::foreground::refusal::Refusal;
 use handcnc::foreground::shown::Shown;
-use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground};
+use handcnc::foreground::{BLOCK_QUEUE, COMMAND_QUEUE, Command, Foreground, Memory};
 use handcnc::queue::Queue;
 use interp_core::block::{Block, Feed};
 use interp_core::channel::State;
@@ -204,7 +204,8 @@ impl<'s, H: Hand> Runner<'s, H> {
         let mut commands = Queue::<Command, COMMAND_QUEUE>::new();
         let ((mut block_in, block_out), (_, command_out)) = (blocks.split(), commands.split());
         let start = self.oracle.position();
-        let mut foreground = Foreground::new(&self.background.machine, start, block_out, command_out);
+        let mut memory = Memory::new();
+        let mut foreground = Foreground::new(&self.background.machine, start, block_out, command_out, &mut memory);
         if let Some(kept) = &kept {
             foreground.restore(kept);
             let back = foreground.kept();

@@ -6,14 +6,14 @@ use super::record::{Kept, Slot};
 
 /// Slots of the history, a power of two. A motion takes one of 32 bytes, rare ones two: 32 KiB hold at least a thousand
 /// usual blocks.
-pub(super) const SLOTS: usize = 1024;
+const SLOTS: usize = 1024;
 
 #[expect(clippy::cast_possible_truncation, reason = "a small constant")]
 const LENGTH: u32 = SLOTS as u32;
 
-/// The motions begun last.
+/// The motions begun last, where drives that go back find them.
 #[derive(Clone, Debug)]
-pub(super) struct Ring {
+pub(super) struct History {
     slots: [Slot; SLOTS],
     /// Where the next one goes.
     next: u32,
@@ -22,8 +22,9 @@ pub(super) struct Ring {
     newest: u32,
 }
 
-impl Ring {
-    pub(super) fn new() -> Self {
+impl History {
+    /// Of no motion.
+    pub(super) const fn new() -> Self {
         Self { slots: [Slot::NONE; SLOTS], next: 0, used: 0, newest: 0 }
     }
 
