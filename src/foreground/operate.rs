@@ -203,7 +203,7 @@ impl Foreground<'_> {
     pub(super) fn oversee(&mut self, report: &Report) {
         self.desk.trouble = report.driven.trouble;
         let place = self.place();
-        if self.attended || report.driven.dropped != 0 {
+        if self.attended || report.driven.dropped != 0 || report.driven.back_end.is_some() {
             self.oversee_acts(report, place);
         }
         let before = self.seen.place;
@@ -227,6 +227,9 @@ impl Foreground<'_> {
     fn oversee_acts(&mut self, report: &Report, place: Lattice) {
         let dropped = &mut self.desk.wheels.dropped_contour;
         *dropped = dropped.saturating_add(report.driven.dropped);
+        if let Some(end) = report.driven.back_end {
+            self.desk.refuse(Refusal::WayBackEnds(end));
+        }
         if self.desk.nulling && self.channel.hands_rest() {
             self.desk.nulling = false;
         }

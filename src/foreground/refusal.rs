@@ -3,6 +3,7 @@
 use super::alarm::Alarm;
 use super::mode::Mode;
 use core::fmt;
+use interp_core::drive::BackEnd;
 use interp_core::units::Axis;
 
 /// Why a request was refused.
@@ -46,6 +47,8 @@ pub enum Refusal {
     InThread,
     /// The axis would leave its limits, to plus or minus.
     Limit(Axis, bool),
+    /// The wheel asks for the path to be led farther back than it can be, and why it can't.
+    WayBackEnds(BackEnd),
     /// The joystick asks for a path and there is none, or was latched when the mode was entered.
     JoystickLatched,
     /// The handwheels are switched off by a parameter.
@@ -84,6 +87,12 @@ impl Refusal {
             Self::Limit(Axis::X, false) => "limit-x-",
             Self::Limit(Axis::Z, true) => "limit-z+",
             Self::Limit(Axis::Z, false) => "limit-z-",
+            Self::WayBackEnds(BackEnd::Start) => "way-back-start",
+            Self::WayBackEnds(BackEnd::Output) => "way-back-output",
+            Self::WayBackEnds(BackEnd::Thread) => "way-back-thread",
+            Self::WayBackEnds(BackEnd::Dwell) => "way-back-dwell",
+            Self::WayBackEnds(BackEnd::Curve) => "way-back-curve",
+            Self::WayBackEnds(BackEnd::Full) => "way-back-full",
             Self::JoystickLatched => "joystick-latched",
             Self::WheelsOff => "wheels-off",
             Self::NoLead => "no-lead",
@@ -117,6 +126,7 @@ impl fmt::Display for Refusal {
             Self::Limit(axis, plus) => {
                 write!(f, "{} is at its {} limit", axis.letter(), if *plus { "plus" } else { "minus" })
             }
+            Self::WayBackEnds(end) => end.fmt(f),
             Self::JoystickLatched => f.write_str("the joystick is latched: move it to the middle first"),
             Self::WheelsOff => f.write_str("the handwheels are switched off: set handwheels=true"),
             Self::NoLead => f.write_str("the lever needs a lead: set a feed rate in mm/rev"),

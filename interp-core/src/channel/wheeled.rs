@@ -69,7 +69,8 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         if !self.enter(self.crank.back) {
             // without an end the motion before is not ready yet: it waits
             if let (true, Some(end)) = (self.crank.back, self.end_of_way_back()) {
-                self.crank.driven.back_end = Some(end);
+                // what pulls asks for the end: it has it
+                self.crank.driven.back_end = Some(end).filter(|_| self.crank.pull.is_none());
                 self.drop_rest(click);
             }
             return false;

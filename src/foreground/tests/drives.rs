@@ -2,6 +2,7 @@
 
 use super::contour::Contour;
 use super::*;
+use interp_core::drive::BackEnd;
 use interp_core::drive::wheel::Click;
 use interp_core::units::{Length, Point, Sense};
 
@@ -109,4 +110,65 @@ fn behind_a_retrace_a_limit_ahead_is_seen() {
     assert_eq!((bench.shown().state, bench.refused()), (State::Holding, Some(Refusal::Limit(Axis::X, true))));
     assert!(bench.track.iter().all(|at| at.x <= 4_800), "{:?}", bench.at);
     bench.keep_limits();
+}
+
+/// Runs a program by the contour wheel for so many ticks, then back until that is refused: and why it is.
+fn led_back(text: &str, ticks: u32) -> (Bench, Option<Refusal>) {
+    let mut bench = Bench::mode(Mode::Linked);
+    bench.ask(Command::Scale(Some(Click::DECADES[2]))).unwrap();
+    bench.rate = COUNTS / 60.0; // 1000 turns a minute
+    bench.ticks(800);
+    bench.load(text);
+    bench.ask(Command::Start).unwrap();
+    bench.turn_contour(2, ticks);
+    assert_eq!(bench.refused(), None);
+    let mut refused = None;
+    for _ in 0..20_000 {
+        bench.turn_contour(-3, 1);
+        refused = bench.refused();
+        if refused.is_some() {
+            break;
+        }
+    }
+    bench.settle();
+    bench.keep_limits();
+    (bench, refused)
+}
+
+#[test]
+fn the_way_back_ends_at_the_start_by_name() {
+    let (bench, refused) = led_back("G1 X1 Z-1 F600\nG1 Z-3\nM2", 100);
+    assert_eq!(refused, Some(Refusal::WayBackEnds(BackEnd::Start)));
+    assert_eq!((bench.at, refused.unwrap().name()), (Lattice::default(), "way-back-start"));
+}
+
+#[test]
+fn the_way_back_ends_at_an_output_by_name() {
+    let (bench, refused) = led_back("G1 X1 F600\nM3 S100\nG1 X4\nM2", 400);
+    assert_eq!(refused, Some(Refusal::WayBackEnds(BackEnd::Output)));
+    assert_eq!((bench.at, refused.unwrap().name()), (Lattice { x: 800, z: 0 }, "way-back-output"));
+}
+
+#[test]
+fn the_way_back_ends_behind_a_thread_by_name() {
+    let (bench, refused) = led_back("G33 Z-10 K1\nG1 X1 F600\nM2", 2_000);
+    assert_eq!(refused, Some(Refusal::WayBackEnds(BackEnd::Thread)));
+    assert_eq!((bench.at, refused.unwrap().name()), (Lattice { x: 0, z: -4000 }, "way-back-thread"));
+}
+
+#[test]
+fn there_is_no_way_back_during_a_dwell_by_name() {
+    let (bench, refused) = led_back("G1 X1 F600\nG4 P3\nG1 X2\nM2", 400);
+    assert_eq!(refused, Some(Refusal::WayBackEnds(BackEnd::Dwell)));
+    assert_eq!((bench.at, refused.unwrap().name()), (Lattice { x: 800, z: 0 }, "way-back-dwell"));
+}
+
+#[test]
+fn the_way_back_ends_where_no_more_is_kept_by_name() {
+    let text: std::string::String =
+        (1..=1100).map(|line| std::format!("G1 X{} F600\n", f64::from(line) / 100.0)).collect();
+    let (bench, refused) = led_back(&text, 2_000);
+    assert_eq!(refused, Some(Refusal::WayBackEnds(BackEnd::Full)));
+    // 1024 of 1100 blocks of 8 pulses
+    assert_eq!((bench.at, refused.unwrap().name()), (Lattice { x: 76 * 8, z: 0 }, "way-back-full"));
 }
