@@ -12,6 +12,7 @@
 )]
 
 mod bench;
+mod follower;
 mod hold;
 mod parts;
 mod retrace;

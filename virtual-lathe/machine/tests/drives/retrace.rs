@@ -1,7 +1,8 @@
 //! The way back: through a thousand blocks and forward again, by wheel and by time, and where it ends.
 
 use crate::bench::{Bench, Turning, lathe, lathe_with, per_minute, point};
-use crate::wheel::{click, limits};
+use crate::follower::{Follower, Item, blocks, items};
+use crate::wheel::click;
 use interp_core::block::{Block, Builder, Output, Pace, Path, Work};
 use interp_core::channel::{Report, State};
 use interp_core::config::Machine;
@@ -12,164 +13,6 @@ use interp_core::law::SpeedLaw;
 use interp_core::units::{Lattice, Length, Point, Sense};
 use proptest::prelude::*;
 use std::collections::{BTreeSet, VecDeque};
-
-/// What a program is made of.
-#[derive(Copy, Clone, Debug)]
-enum Item {
-    /// By so many nm, at mm/min.
-    Line(i64, i64, u64),
-    /// A quarter of a circle of a radius in nm, from the angle of so many quarters.
-    Quarter(i64, u8, Sense, u64),
-    /// Three quarters.
-    Long(i64, u8, u64),
-    Dwell(u32),
-    Stop,
-}
-
-fn blocks(machine: &Machine, items: &[Item]) -> VecDeque<Block> {
-    let mut builder = Builder::new(machine, Point::default());
-    let mut blocks = VecDeque::new();
-    for (line, item) in items.iter().enumerate() {
-        let line = line as u32 + 1;
-        let at = builder.programmed();
-        let (x, z) = (i64::from(at.x.nm()), i64::from(at.z.nm()));
-        let round = |radius: i64, quarter: u8, turn: i64| {
-            // X and Z of the radius vector by quarters
-            let vector = |quarter: i64| [(0, 1), (1, 0), (0, -1), (-1, 0)][quarter.rem_euclid(4) as usize];
-            let (from, to) = (vector(i64::from(quarter)), vector(i64::from(quarter) + turn));
-            let centre = (x - from.0 * radius, z - from.1 * radius);
-            let sense = if turn < 0 { Sense::Clockwise } else { Sense::CounterClockwise };
-            (Path::Arc { centre, sense }, point(centre.0 + to.0 * radius, centre.1 + to.1 * radius))
-        };
-        let (path, end, feed) = match *item {
-            Item::Line(dx, dz, feed) => (Path::Line, point(x + dx, z + dz), feed),
-            Item::Quarter(radius, quarter, sense, feed) => {
-                let (path, end) = round(radius, quarter, if sense == Sense::Clockwise { -1 } else { 1 });
-                (path, end, feed)
-            }
-            Item::Long(radius, quarter, feed) => {
-                let (path, end) = round(radius, quarter, 3);
-                (path, end, feed)
-            }
-            Item::Dwell(ticks) => {
-                builder.standstill();
-                blocks.push_back(Block { line, work: Work::Dwell(ticks) });
-                continue;
-            }
-            Item::Stop => {
-                builder.standstill();
-                blocks.push_back(Block { line, work: Work::Stop });
-                continue;
-            }
-        };
-        let built = builder.motion(path, end, per_minute(feed));
-        assert_eq!(built.refused, None);
-        blocks.extend(built.motions.iter().map(|motion| Block { line, work: Work::Motion(*motion) }));
-    }
-    blocks.push_back(Block { line: 0, work: Work::End });
-    blocks
-}
-
-fn items() -> impl Strategy<Value = Item> {
-    let nm = || prop_oneof![-20_000_i64..20_000, -900_000_i64..900_000];
-    let feed = || 30_u64..3_000;
-    prop_oneof![
-        6 => (nm(), nm(), feed()).prop_map(|(x, z, feed)| Item::Line(x, z, feed)),
-        2 => (20_000_i64..900_000, 0_u8..4, any::<bool>(), feed()).prop_map(|(radius, quarter, clockwise, feed)| {
-            Item::Quarter(radius, quarter, if clockwise { Sense::Clockwise } else { Sense::CounterClockwise }, feed)
-        }),
-        1 => (20_000_i64..500_000, 0_u8..4, feed()).prop_map(|(radius, quarter, feed)| Item::Long(radius, quarter, feed)),
-        1 => (1_u32..40).prop_map(Item::Dwell),
-        1 => Just(Item::Stop),
-    ]
-}
-
-/// A bench that follows along all lattice points of the program, in either sense.
-struct Follower {
-    bench: Bench,
-    way: Vec<Lattice>,
-    /// Where on the way it may be: at one place, but where the way turns back on itself.
-    index: BTreeSet<usize>,
-    places: Vec<[i32; 2]>,
-}
-
-impl Follower {
-    fn new(machine: &Machine, blocks: &VecDeque<Block>) -> Self {
-        let mut bench = Bench::new(machine, blocks.clone());
-        let mut way = vec![Lattice::default()];
-        bench.channel.start();
-        while bench.channel.state() != State::Ended {
-            bench.rest(1);
-            way.extend(bench.pulses.iter().map(|pulse| pulse.at));
-            if bench.channel.state() == State::Stopped {
-                bench.channel.start();
-            }
-        }
-        let bench = Bench::new(machine, blocks.clone());
-        Self { bench, way, index: BTreeSet::from([0]), places: Vec::new() }
-    }
-
-    fn tick(&mut self, counts: i16) -> Report {
-        let report = self.bench.wheel(counts);
-        for pulse in &self.bench.pulses {
-            let next = self.index.iter().flat_map(|&index| [index.checked_sub(1), Some(index + 1)]).flatten();
-            let next: BTreeSet<usize> = next.filter(|&next| self.way.get(next) == Some(&pulse.at)).collect();
-            assert!(!next.is_empty(), "off the points: {:?} at {:?}", pulse.at, self.index);
-            self.index = next;
-        }
-        self.places.push([self.bench.at.x, self.bench.at.z]);
-        if report.state == State::Stopped {
-            self.bench.channel.start();
-        }
-        report
-    }
-
-    fn last(&self) -> Lattice {
-        *self.way.last().unwrap()
-    }
-
-    /// By time for so many ticks at most, then held until it stands.
-    fn by_time(&mut self, ticks: usize) {
-        self.bench.channel.set_drive(Drive::Time).unwrap();
-        self.bench.channel.start();
-        for _ in 0..ticks {
-            if self.tick(0).state == State::Ended {
-                return;
-            }
-        }
-        self.hold();
-    }
-
-    /// Held until it stands, and released.
-    fn hold(&mut self) {
-        self.bench.channel.hold();
-        while self.tick(0).speed > 0 {}
-        self.bench.channel.start();
-    }
-
-    /// By the wheel until it is let go for long enough to stand; where it came to an end of the way back, that.
-    fn by_wheel(&mut self, counts: i16, ticks: usize) -> Option<BackEnd> {
-        self.bench.channel.set_drive(click(100)).unwrap();
-        let mut end = None;
-        for _ in 0..ticks {
-            end = self.tick(counts).driven.back_end;
-            if end.is_some() {
-                break;
-            }
-        }
-        for _ in 0..400 {
-            self.tick(0);
-        }
-        end
-    }
-
-    fn check_limits(&self, [x, z]: [f64; 2], slack: f64) {
-        for (axis, pulse) in [(0, x), (1, z)] {
-            let places: Vec<i32> = self.places.iter().map(|place| place[axis]).collect();
-            limits(&places, pulse, slack).unwrap();
-        }
-    }
-}
 
 /// Short lines and arcs along Z, `count` of them.
 fn row(count: i64) -> Vec<Item> {
@@ -202,14 +45,12 @@ fn a_thousand_blocks_are_retraced_to_the_start_and_run_on_to_the_end() {
         ticks += 1;
         assert!(ticks < 100_000, "it does not come back");
     }
-    for _ in 0..400 {
-        follower.tick(0);
-    }
+    follower.rest();
     // back over a hundred blocks, and by time to the end
     assert_eq!(follower.by_wheel(-40, 2_000), None);
     follower.by_time(100_000);
     assert_eq!((follower.bench.at, follower.bench.channel.state()), (follower.last(), State::Ended));
-    follower.check_limits([1250.0, 2500.0], 6.0);
+    follower.check_limits([1250.0, 2500.0]);
 }
 
 #[test]
@@ -226,8 +67,61 @@ fn a_long_way_back_is_as_fast_as_the_wheel_where_blocks_are_long_enough() {
     assert!(speeds[1_000..].iter().all(|speed| speed >> 12 == 83_333), "{:?}", &speeds[1_000..1_020]);
 }
 
+/// More by the environment: PROPTEST_CASES. A program of a thousand blocks takes half a second, so little is shrunk.
+fn cases(usual: u32, max_shrink_iters: u32) -> ProptestConfig {
+    let cases = std::env::var("PROPTEST_CASES").map_or(usual, |cases| cases.parse().unwrap());
+    ProptestConfig { cases, max_shrink_iters, ..ProptestConfig::default() }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: std::env::var("PROPTEST_CASES").map_or(12, |cases| cases.parse().unwrap()), ..ProptestConfig::default() })]
+    #![proptest_config(cases(6, 16))]
+
+    /// More than a thousand lines and arcs there by time, back and forth by the wheel, all the way back, and there again: each
+    /// pulse back is one of the way there, undone in order.
+    #[test]
+    fn more_than_a_thousand_blocks_are_undone_pulse_by_pulse(
+        items in prop::collection::vec(short(), 1_001..1_024), turns in prop::collection::vec((-60_i16..60, 1_usize..500), 8),
+        pulses in prop::sample::select(vec![[1250, 2500], [1000, 1000], [5000, 1000]]), law: bool,
+    ) {
+        let machine = lathe_with(pulses, Method::MinimumDeviation);
+        let machine = if law { machine.with_law(SpeedLaw::Sine, 50_000).unwrap() } else { machine };
+        let mut follower = Follower::new(&machine, &blocks(&machine, &items));
+        follower.bench.channel.start();
+        while follower.tick(0).line <= 1_000 {}
+        follower.hold();
+        let there = follower.bench.at;
+        for (counts, ticks) in turns {
+            let end = follower.by_wheel(counts, ticks);
+            prop_assert!(matches!(end, None | Some(BackEnd::Start)), "{end:?}");
+        }
+        prop_assert_eq!(follower.by_wheel(-40, 100_000), Some(BackEnd::Start));
+        prop_assert_eq!((follower.bench.at, follower.index.first()), (Lattice::default(), Some(&0)));
+        let mut ticks = 0;
+        while follower.tick(40).line <= 1_000 {
+            ticks += 1;
+            prop_assert!(ticks < 100_000, "it does not come back to {:?}", there);
+        }
+        follower.rest();
+        follower.by_time(100_000);
+        prop_assert_eq!((follower.bench.at, follower.bench.channel.state()), (follower.last(), State::Ended));
+        follower.check_limits(pulses.map(f64::from));
+    }
+}
+
+/// Lines and quarters of circles of a few pulses to a few hundred.
+fn short() -> impl Strategy<Value = Item> {
+    let nm = || prop_oneof![-20_000_i64..20_000, -150_000_i64..150_000];
+    let feed = || 300_u64..3_000;
+    prop_oneof![
+        2 => (nm(), nm(), feed()).prop_map(|(x, z, feed)| Item::Line(x, z, feed)),
+        1 => (20_000_i64..150_000, 0_u8..4, any::<bool>(), feed()).prop_map(|(radius, quarter, clockwise, feed)| {
+            Item::Quarter(radius, quarter, if clockwise { Sense::Clockwise } else { Sense::CounterClockwise }, feed)
+        }),
+    ]
+}
+
+proptest! {
+    #![proptest_config(cases(12, 100))]
 
     /// Wheel and time in turns, whatever the program stands for on its way: the same points there and back, and the end.
     #[test]
@@ -260,7 +154,7 @@ proptest! {
             follower.by_time(200_000);
         }
         prop_assert_eq!((follower.bench.at, follower.bench.channel.state()), (follower.last(), State::Ended));
-        follower.check_limits(pulses.map(f64::from), 14.0);
+        follower.check_limits(pulses.map(f64::from));
     }
 
     /// Methods that walk back on points of their own are exact at home and at the end.
@@ -276,10 +170,7 @@ proptest! {
         bench.rest(200);
         bench.channel.set_drive(click(100)).unwrap();
         bench.channel.start();
-        let mut end = None;
-        while end.is_none() {
-            end = bench.wheel(-9).driven.back_end;
-        }
+        let end = (0..100_000).find_map(|_| bench.wheel(-9).driven.back_end);
         prop_assert_eq!((bench.at, end), (Lattice::default(), Some(BackEnd::Start)));
         for _ in 0..3_000 {
             bench.wheel(7);
@@ -320,7 +211,7 @@ fn what_was_stood_at_is_stood_at_again() {
             }
             follower.by_time(1_000);
             assert_eq!((follower.bench.at, follower.bench.channel.state()), (follower.last(), State::Ended));
-            follower.check_limits([1250.0, 2500.0], 3.0);
+            follower.check_limits([1250.0, 2500.0]);
         }
         assert_eq!(ends.len(), 2, "in the dwell, and else: {ends:?}");
     }

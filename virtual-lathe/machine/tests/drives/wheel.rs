@@ -187,7 +187,7 @@ fn there_and_back(turns: &[(i16, u32)], um: u32, method: Method, slack: f64) -> 
 }
 
 /// Speed and acceleration over windows, joints within 2 mm/s on either side.
-pub(crate) fn limits(places: &[i32], pulse_nm: f64, slack: f64) -> Result<(), TestCaseError> {
+fn limits(places: &[i32], pulse_nm: f64, slack: f64) -> Result<(), TestCaseError> {
     let (v, a, jump) = (5000.0 / 60.0 * 1e3 / pulse_nm, 500.0 / pulse_nm, 2_000.0 / pulse_nm);
     for h in (0..9).map(|n| 1_usize << n) {
         for at in 2 * h..places.len() {
