@@ -316,7 +316,8 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         self.closed = true;
     }
 
-    /// Sets the feed of the motion that is being executed and of those to come; threads keep theirs.
+    /// Sets the feed of the motion that is being executed and of those to come; threads keep theirs, and so do motions that
+    /// the wheel has led back over.
     pub fn set_feed(&mut self, feed: Feed) {
         if let Current::Motion(active) = &mut self.current {
             active.motion.set_feed(feed);

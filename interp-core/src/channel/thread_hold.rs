@@ -44,8 +44,9 @@ const SLOW: u32 = 100;
 /// Share of its largest speed in a cut, as a shift, below which a spindle hardly turns.
 const HARDLY: u32 = 4;
 
-/// Blocks of a pass that the way back is certainly known for: fewer than stand ready in the trail.
+/// Blocks of a pass that the way back is certainly known for: the trail holds nothing else, and all of them stand ready.
 const MOST_BLOCKS: u32 = 8;
+const _: () = assert!((MOST_BLOCKS as usize) < super::trail::WINDOW);
 
 /// What a thread keeps besides its gearing.
 #[derive(Clone, Debug)]

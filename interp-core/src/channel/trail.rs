@@ -26,7 +26,7 @@ use maker::Maker;
 use record::Kept;
 
 /// Motions that stand ready. Every one costs its size in RAM.
-const WINDOW: usize = 12;
+pub(super) const WINDOW: usize = 12;
 
 /// How many of them are wanted where the tool goes to, and how many at least where it comes from.
 const TOWARD: usize = 8;
@@ -72,8 +72,9 @@ impl Trail {
 
     /// Notes a motion that begins.
     pub(super) fn push(&mut self, line: u32, motion: &Motion) {
-        // threads are not gone back into from elsewhere, nor left backward
-        if self.window.back().is_some_and(|last| last.motion.feed.is_thread() != motion.feed.is_thread()) {
+        // threads are not gone back into from elsewhere, nor left backward; a pass that begins here is a thread of its own
+        let thread = motion.feed.is_thread();
+        if self.window.back().is_some_and(|last| last.motion.feed.is_thread() != thread || thread && self.apart) {
             self.clear(BackEnd::Thread);
         }
         let apart = core::mem::take(&mut self.apart);

@@ -46,6 +46,11 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         };
         let mut clock = 0_u32;
         while clock < TICK_CLOCKS {
+            if self.crank.in_thread {
+                // begun in this tick: the spindle drives it, from its start
+                self.drop_rest(click);
+                return None;
+            }
             if self.speed == 0 && !self.set_off(click) {
                 let forward = self.crank.wheel.to_go() > 0 && clock == 0 && !self.crank.back;
                 return if forward { self.end_of_path(click) } else { None };
