@@ -1,10 +1,10 @@
 //! The way back: through a thousand blocks and forward again, by wheel and by time, and where it ends.
 
-use crate::bench::{Bench, Turning, lathe, lathe_with, per_minute, point};
+use crate::bench::{Bench, Turning, lathe, lathe_with, per_minute};
 use crate::follower::{Follower, Item, blocks, items};
 use crate::wheel::click;
 use interp_core::block::{Block, Builder, Output, Pace, Path, Work};
-use interp_core::channel::{Report, State};
+use interp_core::channel::State;
 use interp_core::config::Machine;
 use interp_core::curve::method::Method;
 use interp_core::drive::gearing::Lead;
