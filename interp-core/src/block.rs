@@ -302,8 +302,11 @@ impl Builder {
                         first.continues = true;
                         // one speed for the one curve that was programmed
                         let limit = first.limit.min(second.limit);
-                        (first.limit, second.limit) = (limit, limit);
-                        (first.source, second.source) = (first.source.shared(), second.source.shared());
+                        for half in [first, second] {
+                            if half.limit != limit {
+                                (half.limit, half.source) = (limit, half.source.shared());
+                            }
+                        }
                     }
                 }
                 Split::Whole(reach) => self.arc(end, centre, sense, reach, pace, &mut built),

@@ -18,7 +18,7 @@ pub(crate) enum Source {
     Arc {
         /// What it was prepared of.
         round: Round,
-        /// Its limit is that of two, as it is one of two parts of a programmed arc.
+        /// Its limit is that of the other part of a programmed arc.
         shared: bool,
     },
     /// A part of a curve that is made part by part: of nothing less than the curve.
@@ -27,7 +27,7 @@ pub(crate) enum Source {
 }
 
 impl Source {
-    /// The same as one of two parts.
+    /// The same with the other part's limit.
     pub(super) const fn shared(self) -> Self {
         match self {
             Self::Arc { round, .. } => Self::Arc { round, shared: true },

@@ -6,7 +6,9 @@ use crate::drive::BackEnd;
 
 /// The blocks of a [channel](super::Channel): a look-ahead of `N`, and the way back. A channel has a memory of its own, or is
 /// lent one: on a chip it lies among the statics, as it is too much to pass over the stack.
+// the look-ahead's own figures stand at its front, the trail's likewise
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Memory<const N: usize> {
     pub(super) ahead: Lookahead<N>,
     pub(super) trail: Trail,

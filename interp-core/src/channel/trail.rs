@@ -43,7 +43,9 @@ struct Trod {
 }
 
 /// The motions begun last.
+// what each tick asks for stands before the motions
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub(super) struct Trail {
     /// How many motions of the window are newer than the one that the tool is in, or at whose end it is.
     behind: usize,
@@ -213,7 +215,18 @@ impl Trail {
     }
 
     /// Squared speed at which the present motion has to end going forward; with `rest` the newest is begun from standstill.
+    #[inline]
     pub(super) fn exit<const N: usize>(&self, ahead: &Lookahead<N>, motion: &Motion, rest: bool) -> u64 {
+        if !self.is_behind() && !self.apart {
+            return ahead.exit(motion);
+        }
+        self.exit_behind(ahead, motion, rest)
+    }
+
+    /// The same where the tool is in an earlier motion, or the path stands behind the newest.
+    // apart from the usual case, which every tick has
+    #[inline(never)]
+    fn exit_behind<const N: usize>(&self, ahead: &Lookahead<N>, motion: &Motion, rest: bool) -> u64 {
         let Some(newest) = self.before_newest(0) else { return ahead.exit(motion) };
         let runs_on = !self.short && !self.apart;
         let mut exit = if runs_on { ahead.exit(&newest.motion) } else { square(newest.motion.stop) };
