@@ -439,6 +439,12 @@ impl Builder {
         Self::least(self.machine.x.speed, self.machine.z.speed, heading)
     }
 
+    /// The speed at which no axis jumps by more than it may where the direction changes.
+    fn corner(&self, before: Direction, after: Direction) -> Speed {
+        let change = (after.0.wrapping_sub(before.0), after.1.wrapping_sub(before.1));
+        Self::least(self.machine.x.jump, self.machine.z.jump, change).0
+    }
+
     fn finish(&mut self, curve: Curve, run: &Run, pace: Pace, source: Source, built: &mut Built) {
         let feed = match pace {
             Pace::Rapid => Feed::Rapid,
@@ -449,10 +455,7 @@ impl Builder {
         let joint = match self.heading {
             // a thread begins and ends in standstill: its drive is another one
             Some(_) if feed.is_thread() != self.in_thread => 0,
-            Some(before) => {
-                let change = (run.entry.0.wrapping_sub(before.0), run.entry.1.wrapping_sub(before.1));
-                Self::least(self.machine.x.jump, self.machine.z.jump, change).0
-            }
+            Some(before) => self.corner(before, run.entry),
             None => Speed::MAX,
         };
         self.in_thread = feed.is_thread();

@@ -11,24 +11,34 @@
 //!   feed along the curve is what was asked, and what rounding does to a chord of a few pulses moves no step by more than
 //!   it moves the chord's ends.
 //! * **How fast.** Joints are judged by the curve's own tangents on both sides, as a smooth curve has no corner where it is
-//!   divided. A chord of length L that turns by w has R = L / w. Turning may take 0.8 of the acceleration, `v^2 = 0.8 a R`,
-//!   and what it takes at the largest speed, c = v^2 / R, leaves `sqrt(a^2 - c^2)` for speeding up: 0.6 a at least.
+//!   divided. R is the least radius at five points of a chord, or L / w for a length L that turns by w where that is less.
+//!   Turning may take 0.8 of the acceleration, `v^2 = 0.8 a R`, and what it takes at the largest speed, c = v^2 / R, leaves
+//!   `sqrt(a^2 - c^2)` for speeding up: 0.6 a at least.
+//! * **Tips.** That holds where no point between the five is bent much more sharply. But the tip of a hairpin may be far
+//!   narrower than a pulse: on `z = x^2 / 2 p` the radius is p at the tip, and `p / cos^3 f` where the direction has turned
+//!   by f. So no chord is so long that its curve leans from it by more than a quarter. What turns by more even within a
+//!   190th of a pulse (the sharper it is, the slower it would be run, down to standstill in a cusp) is a corner, and taken
+//!   like one: no axis jumps by more than `max_jump`. Chords joined in one lattice point keep the least radius and the
+//!   sharpest corner of all of them.
 //!
-//! The five points at a chord's quarters give length and tangents: with the sums S4 and S2 of four and two chords the
-//! length is `S4 + (S4 - S2) / 3` (Richardson), and the tangent at an end is that of the quartic through all five,
-//! `-25 P0 + 48 P1 - 36 P2 + 16 P3 - 3 P4`. A parabola through three of them is off by some p / 16 R, p being the pulse:
-//! at a small `max_jump` the joints of two chords would seem corners.
+//! The five points at a chord's quarters give length, tangents and radii: with the sums S4 and S2 of four and two chords the
+//! length is `S4 + (S4 - S2) / 3` (Richardson), and tangents and radii are those of the quartic through all five
+//! ([`quartic`]). A tangent of a parabola through three of them is off by some p / 16 R, p being the pulse: at a small
+//! `max_jump` the joints of two chords would seem corners.
 
-use super::{Builder, Curve, Direction, Limited, Motion, Pace, Run, length};
+use super::{Builder, Curve, Direction, Limited, Motion, Pace, Run, Speed, length};
 use crate::config::FRACTION_BITS;
 use crate::curve::line::Line;
 use crate::curve::proportion::Proportion;
 use crate::math::{HALF_TURN_Q60, RADIAN_Q30, Wide, angle_of, root, root_wide, scale, to_i64, to_u32, to_u64};
-use crate::sampled::{Chords, CurveRefusal, Place, Sampled, WHOLE, distance};
+use crate::sampled::{Chords, CurveRefusal, Place, Sampled, WHOLE, distance, quartic};
 use crate::units::Point;
 
 /// Tenths of its acceleration that a chord's curvature may take.
 const CURVATURE_TENTHS: u128 = 8;
+
+/// A radius on which turning limits no speed.
+const STRAIGHT: u64 = 1 << 60;
 
 /// Chords within one lattice point after which a curve is given up: it does not get on.
 const MOST_JOINED: u32 = 1 << 16;
@@ -117,11 +127,13 @@ impl<C: Sampled> Chain<C> {
                 Some(Err(refused)) => return Some(self.refuse(refused)),
                 Some(Ok(end)) => end,
             };
-            let stretch = Stretch::new(self.chords.curve(), begin, self.chords.parameter());
-            let stretch = match self.joined.take() {
-                Some(joined) => joined.and(stretch),
-                None => stretch,
-            };
+            let mut stretch = Stretch::new(self.chords.curve(), begin, self.chords.parameter());
+            if self.chords.is_corner() {
+                stretch.make_corner(builder);
+            }
+            if let Some(joined) = self.joined.take() {
+                stretch = joined.and(stretch, builder);
+            }
             match self.motion(stretch, end, builder) {
                 Some(motion) => {
                     (self.moves, self.count) = (true, 0);
@@ -188,8 +200,8 @@ impl<C: Sampled> Chain<C> {
         let length = stretch.length.max(1);
         let by_axis = builder.speed_limit(stretch.extent);
         let accel = builder.machine.x.accel.min(builder.machine.z.accel);
-        let by_bend = bend_limit(accel, length, stretch.turn);
-        let along = accel_beside(accel, by_axis.0.min(by_bend), length, stretch.turn);
+        let by_bend = bend_limit(accel, stretch.radius).min(stretch.corner);
+        let along = accel_beside(accel, by_axis.0.min(by_bend), stretch.radius);
         let run = Run { length, reach: length, entry, exit, by_axis, by_bend, accel: along };
         builder.chained(Curve::Line(line, proportion(line, length)), &run, self.pace, &mut self.limited)
     }
@@ -200,22 +212,15 @@ fn proportion(line: Line, length: u64) -> Proportion {
     Proportion::new(u64::from(line.steps()) << 16, length, length)
 }
 
-/// The largest speed at which turning by `turn` (60 fraction bits) over a length takes its share of the acceleration.
-fn bend_limit(accel: u32, length: u64, turn: u64) -> u32 {
-    if turn == 0 {
-        return u32::MAX;
-    }
-    // R = length / turn, at most 2^60: past that no speed is limited
-    let radius = (u128::from(length) << 60).checked_div(u128::from(turn)).unwrap_or(0).min(1 << 60);
-    to_u32(root_wide(u128::from(accel).wrapping_mul(radius).wrapping_mul(CURVATURE_TENTHS) / 10))
+/// The largest speed at which turning on a radius takes its share of the acceleration.
+fn bend_limit(accel: u32, radius: u64) -> u32 {
+    to_u32(root_wide(u128::from(accel).wrapping_mul(u128::from(radius)).wrapping_mul(CURVATURE_TENTHS) / 10))
 }
 
 /// What turning at `speed` leaves of an acceleration along the path.
-fn accel_beside(accel: u32, speed: u32, length: u64, turn: u64) -> u32 {
-    let square = i128::from(u64::from(speed).wrapping_mul(u64::from(speed)));
-    // v^2 / R = v^2 turn / length
-    let across = to_u32(to_u64(scale(square, i128::from(turn >> 20), i128::from(length)) >> 40)).min(accel);
-    let (accel, across) = (u64::from(accel), u64::from(across));
+fn accel_beside(accel: u32, speed: u32, radius: u64) -> u32 {
+    let across = u64::from(speed).wrapping_mul(u64::from(speed)).checked_div(radius).unwrap_or(u64::MAX);
+    let (accel, across) = (u64::from(accel), across.min(u64::from(accel)));
     root(accel.wrapping_mul(accel).wrapping_sub(across.wrapping_mul(across))).max(1)
 }
 
@@ -246,6 +251,12 @@ pub(super) fn extent(a: Direction, b: Direction) -> Direction {
     (x, z)
 }
 
+/// The speed at which a corner may be taken; where the curve stands it may turn back.
+fn corner(builder: &Builder, before: Option<Direction>, after: Option<Direction>) -> Speed {
+    let before = before.unwrap_or((RADIAN_Q30, RADIAN_Q30));
+    builder.corner(before, after.unwrap_or((before.0.wrapping_neg(), before.1.wrapping_neg())))
+}
+
 /// What a stretch of a curve is like.
 #[derive(Copy, Clone, Debug)]
 struct Stretch {
@@ -254,8 +265,10 @@ struct Stretch {
     /// Tangents at both ends; `None` where the curve stands.
     entry: Option<Direction>,
     exit: Option<Direction>,
-    /// By how much it turns, 60 fraction bits.
-    turn: u64,
+    /// Least radius that it bends on, nm with 12 fraction bits, at most [`STRAIGHT`].
+    radius: u64,
+    /// The speed at which its sharpest corner may be taken.
+    corner: Speed,
     /// Largest parts of its direction.
     extent: Direction,
 }
@@ -271,18 +284,11 @@ impl Stretch {
         let fourfold =
             reach(p0, p1).wrapping_add(reach(p1, p2)).wrapping_add(reach(p2, p3)).wrapping_add(reach(p3, p4));
         let length = fourfold.wrapping_add(fourfold.saturating_sub(twice) / 3);
-        // of the quartic through the points, the first one at its end
-        let tangent = |points: [Place; 5], sign: i64| {
-            let part = |of: fn(Place) -> i64| {
-                let weighed = points.iter().zip([-25_i64, 48, -36, 16, -3]);
-                let sum = weighed.fold(0_i64, |sum, (point, weight)| sum.wrapping_add(of(*point).wrapping_mul(weight)));
-                i128::from(sum.wrapping_mul(sign))
-            };
-            unit((part(|point| point.0), part(|point| point.1)))
-        };
-        let (entry, exit) = (tangent(p, 1), tangent([p4, p3, p2, p1, p0], -1));
-        let chord = unit((i128::from(p4.0.wrapping_sub(p0.0)), i128::from(p4.1.wrapping_sub(p0.1))));
-        let (mut turn, mut most) = (0, (0, 0));
+        let (entry, exit) = quartic::ends(&p);
+        let direction = |(x, z): (i64, i64)| unit((i128::from(x), i128::from(z)));
+        let (entry, exit) = (direction(entry), direction(exit));
+        let chord = direction((p4.0.wrapping_sub(p0.0), p4.1.wrapping_sub(p0.1)));
+        let (mut turn, mut most) = (0_u64, (0, 0));
         if let (Some(entry), Some(exit)) = (entry, exit) {
             most = extent(entry, exit);
             turn = angle_between(entry, exit);
@@ -293,34 +299,30 @@ impl Stretch {
                 let (a, b) = (extent(entry, chord), extent(chord, exit));
                 most = (a.0.max(b.0), a.1.max(b.1));
             }
-            // and one may bend more sharply somewhere inside: by so much all of it would, as between two quarters
-            let side =
-                |a: Place, b: Place| unit((i128::from(b.0.wrapping_sub(a.0)), i128::from(b.1.wrapping_sub(a.1))));
-            for bend in p.windows(3) {
-                let [a, b, c] = bend else { continue };
-                let (Some(before), Some(after)) = (side(*a, *b), side(*b, *c)) else { continue };
-                let half = reach(*a, *b).wrapping_add(reach(*b, *c)) >> 1;
-                let all = scale(i128::from(angle_between(before, after)), i128::from(length), i128::from(half));
-                turn = turn.max(to_u64(all));
-            }
             if turn > HALF_TURN_Q60.unsigned_abs() >> 1 {
                 most = (RADIAN_Q30, RADIAN_Q30);
             }
         }
-        Self { length, entry, exit, turn, extent: most }
+        // all of it as sharply as at its sharpest point, or as its turning makes on the average
+        let mean = scale(i128::from(length), 1 << 60, i128::from(turn.max(1)));
+        let radius = to_u64(mean).min(quartic::least_radius(&p).unwrap_or(STRAIGHT)).min(STRAIGHT);
+        Self { length, entry, exit, radius, corner: Speed::MAX, extent: most }
+    }
+
+    /// Takes its turning for a corner.
+    fn make_corner(&mut self, builder: &Builder) {
+        (self.radius, self.corner) = (STRAIGHT, corner(builder, self.entry, self.exit));
     }
 
     /// This one and the next.
-    fn and(self, next: Self) -> Self {
-        let between = match (self.exit, next.entry) {
-            (Some(exit), Some(entry)) => angle_between(exit, entry),
-            _ => 0,
-        };
+    fn and(self, next: Self, builder: &Builder) -> Self {
+        let between = corner(builder, self.exit, next.entry);
         Self {
             length: self.length.wrapping_add(next.length),
             entry: self.entry.or(next.entry),
             exit: next.exit.or(self.exit),
-            turn: self.turn.saturating_add(between).saturating_add(next.turn),
+            radius: self.radius.min(next.radius),
+            corner: self.corner.min(between).min(next.corner),
             extent: (self.extent.0.max(next.extent.0), self.extent.1.max(next.extent.1)),
         }
     }

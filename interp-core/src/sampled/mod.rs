@@ -2,7 +2,9 @@
 //!
 //! A [`Sampled`] curve gives its point for a parameter from 0 to 1; [`Chords`] divides it. A chord is as long as its
 //! distance from the curve allows: it is halved until the curve's points at its 16ths lie within the tolerance, and the
-//! next one tries twice its length. It also stays below [`Sampled::longest`], a part of the curve that has no more than one
+//! next one tries twice its length. It is halved as well until none of its 16ths, nor a tangent at its ends, leans from it by
+//! more than a quarter (14 degrees), so that nowhere inside it bends much more sharply than on the whole, as the tip of a hairpin does; a bend that
+//! is left where a chord is within a 64th of the tolerance is a [corner](Chords::is_corner). It also stays below [`Sampled::longest`], a part of the curve that has no more than one
 //! bend to each side, so that no wave can hide between the points looked at. The points looked at bound the
 //! distance from above but for a tenth, which the tolerance keeps in reserve. State is bounded: a parameter and a length.
 //!
@@ -17,6 +19,7 @@
 pub mod curves;
 pub mod end_test;
 pub mod nurbs;
+pub(crate) mod quartic;
 pub mod spline;
 
 use crate::math::{HALF_TURN_Q60, Wide, root_wide, scale, to_i64};
@@ -87,7 +90,19 @@ pub struct Chords<C> {
     from: Place,
     /// nm with [`FRACTION`] fraction bits.
     tolerance: u64,
+    corner: bool,
     refused: bool,
+}
+
+/// What a chord is like.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+enum Fit {
+    /// Too far from the curve, or too much bent.
+    Poor,
+    /// As short as it gets, and bent all the same.
+    Corner,
+    /// Near, and nearly straight.
+    Good,
 }
 
 impl<C: Sampled> Chords<C> {
@@ -99,7 +114,8 @@ impl<C: Sampled> Chords<C> {
         let from = curve.at(0);
         let span = curve.longest().clamp(Self::SHORTEST, WHOLE);
         let tolerance = u64::from(tolerance.max(1)) << FRACTION;
-        Self { curve, parameter: 0, span, from, tolerance: tolerance.wrapping_sub(tolerance / 10), refused: false }
+        let tolerance = tolerance.wrapping_sub(tolerance / 10);
+        Self { curve, parameter: 0, span, from, tolerance, corner: false, refused: false }
     }
 
     /// The curve that is divided.
@@ -112,23 +128,69 @@ impl<C: Sampled> Chords<C> {
         self.parameter
     }
 
-    /// Whether the chord to `end` is near enough: the curve at its 16ths. Quarters alone were met by chance on rational splines.
-    fn holds(&self, span: u64, to: Place) -> bool {
-        let (dx, dz) = (to.0.wrapping_sub(self.from.0), to.1.wrapping_sub(self.from.1));
-        let length = i128::from(distance(dx, dz));
-        (1..16_u64).all(|part| {
-            let at = self.curve.at(self.parameter.wrapping_add(span.wrapping_mul(part) >> 4));
-            let (px, pz) = (at.0.wrapping_sub(self.from.0), at.1.wrapping_sub(self.from.1));
-            let along = i128::from(px).times(i128::from(dx)).wrapping_add(i128::from(pz).times(i128::from(dz)));
-            // beyond its ends the chord is as far as they are
-            if length == 0 || along < 0 || along > length.times(length) {
-                let (qx, qz) = (at.0.wrapping_sub(to.0), at.1.wrapping_sub(to.1));
-                return distance(px, pz).min(distance(qx, qz)) <= self.tolerance;
-            }
-            let cross = i128::from(px).times(i128::from(dz)).wrapping_sub(i128::from(pz).times(i128::from(dx)));
-            cross.unsigned_abs() <= u128::from(self.tolerance).saturating_mul(length.unsigned_abs())
-        })
+    /// Whether the chord given last is a corner: the curve turns by more than a chord may, within a 64th
+    /// of the tolerance.
+    pub const fn is_corner(&self) -> bool {
+        self.corner
     }
+
+    /// How good the chord to `to` is: by the curve at its 16ths. Quarters alone were met by chance on rational splines.
+    fn fit(&self, span: u64, to: Place) -> Fit {
+        let grain = self.tolerance >> 6;
+        let chord = way(self.from, to);
+        let mut points = [self.from; 17];
+        let mut reach = 0;
+        for (part, point) in (0_u64..).zip(&mut points).skip(1) {
+            *point = self.curve.at(self.parameter.wrapping_add(span.wrapping_mul(part) >> 4));
+            if !self.is_near(*point, to, chord) {
+                return Fit::Poor;
+            }
+            let (x, z) = way(self.from, *point);
+            reach = x.unsigned_abs().max(z.unsigned_abs()).max(reach);
+        }
+        // the direction of a shorter one is not known, nor does it matter: all 16 are a grain
+        let leans = |side: (i64, i64), least: u64| {
+            let (along, across) = parts(side, chord);
+            side.0.unsigned_abs().max(side.1.unsigned_abs()) > least && across.saturating_mul(4) >= along
+        };
+        let least = grain >> 4;
+        let [p0, p1, p2, p3, p4, .., p12, p13, p14, p15, p16] = points;
+        // a tip inside the first or the last side is told by the tangents there
+        let entry = quartic::ends(&[p0, p1, p2, p3, p4]).0;
+        let exit = quartic::ends(&[p12, p13, p14, p15, p16]).1;
+        let bent = leans(entry, least.wrapping_mul(12))
+            || leans(exit, least.wrapping_mul(12))
+            || points.windows(2).any(|pair| matches!(pair, [a, b] if leans(way(*a, *b), least)));
+        match bent {
+            false => Fit::Good,
+            true if reach <= grain || span <= Self::SHORTEST => Fit::Corner,
+            true => Fit::Poor,
+        }
+    }
+
+    /// Whether a point of the curve is near enough to the chord to `to`.
+    fn is_near(&self, at: Place, to: Place, chord: (i64, i64)) -> bool {
+        let length = i128::from(distance(chord.0, chord.1));
+        let (px, pz) = way(self.from, at);
+        let (along, across) = parts((px, pz), chord);
+        // beyond its ends the chord is as far as they are
+        if length == 0 || along < 0 || along > length.times(length) {
+            let (qx, qz) = way(to, at);
+            return distance(px, pz).min(distance(qx, qz)) <= self.tolerance;
+        }
+        across.unsigned_abs() <= u128::from(self.tolerance).saturating_mul(length.unsigned_abs())
+    }
+}
+
+const fn way(from: Place, to: Place) -> (i64, i64) {
+    (to.0.wrapping_sub(from.0), to.1.wrapping_sub(from.1))
+}
+
+/// How far a vector leads along another one, and across it to either side; times the length of that one.
+fn parts((px, pz): (i64, i64), (dx, dz): (i64, i64)) -> (i128, i128) {
+    let of = |p: i64, q: i64| i128::from(p).times(i128::from(q));
+    let (along, across) = (of(px, dx).wrapping_add(of(pz, dz)), of(px, dz).wrapping_sub(of(pz, dx)));
+    (along, across.saturating_abs())
 }
 
 /// Length of a vector.
@@ -154,19 +216,17 @@ impl<C: Sampled> Iterator for Chords<C> {
         let left = WHOLE.wrapping_sub(self.parameter);
         let mut span = self.span.min(left);
         let mut to = self.curve.at(self.parameter.wrapping_add(span));
-        let fine = self.curve.longest() >= Self::SHORTEST;
-        while fine && !self.holds(span, to) {
-            if span <= Self::SHORTEST {
-                self.refused = true;
-                break;
-            }
+        let mut fit = self.fit(span, to);
+        while fit == Fit::Poor && span > Self::SHORTEST {
             span >>= 1;
             to = self.curve.at(self.parameter.wrapping_add(span));
+            fit = self.fit(span, to);
         }
-        if self.refused || !fine {
+        if fit == Fit::Poor || self.curve.longest() < Self::SHORTEST {
             self.refused = true;
             return Some(Err(CurveRefusal::TooFine));
         }
+        self.corner = fit == Fit::Corner;
         self.parameter = self.parameter.wrapping_add(span);
         self.span = span.wrapping_mul(2).min(self.curve.longest()).max(Self::SHORTEST);
         self.from = to;

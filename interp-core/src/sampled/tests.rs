@@ -110,6 +110,33 @@ fn hyperbola_and_parabola_follow_their_equations() {
     follows("parabola", &curve, |t| place(v(t).powi(2) / 3e7, v(t)));
 }
 
+/// A parabola with a radius of 1 um at its tip, by chords that may leave it by far more: the direction `atan(v / p)`
+/// changes by at most so much along a chord as two ends may that lean from it by a quarter; but for the corner, which is
+/// the tip where the tolerance is large, and there only.
+#[test]
+fn no_chord_bends_sharply_but_a_corner() {
+    for (tolerance, corners) in [(5_000, false), (400_000, true)] {
+        let curve = TiltedParabola::new((um(0), um(0)), um(1), radians(0.3), (um(-700), um(900))).unwrap();
+        let mut chords = Chords::new(curve, tolerance);
+        let (mut began, mut seen) = (0, false);
+        while let Some(end) = chords.next() {
+            end.unwrap();
+            let across = |parameter: u64| 1600.0 * parameter as f64 / WHOLE as f64 - 700.0;
+            let (from, to) = (across(began), across(chords.parameter()));
+            let turn = to.atan() - from.atan();
+            if chords.is_corner() {
+                // the chord is no longer than a 64th of the tolerance
+                let reach = f64::from(tolerance) / 64e3;
+                assert!(turn > 0.4 && from > -reach - 1.0 && to < reach + 1.0, "{from} to {to}");
+            } else {
+                assert!(turn < 0.6, "{from} to {to} turns by {turn}");
+            }
+            (began, seen) = (chords.parameter(), seen | chords.is_corner());
+        }
+        assert_eq!((began, seen), (WHOLE, corners), "{tolerance}");
+    }
+}
+
 #[test]
 fn sine_and_spiral_follow_their_equations() {
     let curve = SineWave::new((um(20_000), um(0)), um(2_000), um(7_000), radians(0.4), um(-50_000)).unwrap();

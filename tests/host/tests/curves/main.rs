@@ -72,6 +72,16 @@ fn pulses() -> impl Strategy<Value = ((u32, u32), (u32, u32))> {
     (one.clone(), one)
 }
 
+/// A spline with a hairpin whose tip is far narrower than a pulse: there it has to slow down nearly to standstill.
+#[test]
+fn the_tip_of_a_hairpin_is_taken_slowly() {
+    let points = vec![(4603, 2912), (-2187, -6991), (4113, -5841), (-7846, 6066), (8825, -3711)];
+    let sample = Sample::new(Kind::Spline { points }, (0, 0));
+    let machine = machine((10_000, 7), (10_000, 7), 1330);
+    let played = run(&sample, &machine, Pace::Feed(feed(4772)));
+    assert_eq!(played.limits(&machine), None);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: cases(100), max_shrink_iters: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
