@@ -128,8 +128,7 @@ impl<C: Sampled> Chords<C> {
         self.parameter
     }
 
-    /// Whether the chord given last is a corner: the curve turns by more than a chord may, within a 64th
-    /// of the tolerance.
+    /// Whether the chord given last is a corner: the curve turns by more than a chord may, within a 64th of the tolerance.
     pub const fn is_corner(&self) -> bool {
         self.corner
     }
@@ -138,11 +137,12 @@ impl<C: Sampled> Chords<C> {
     fn fit(&self, span: u64, to: Place) -> Fit {
         let grain = self.tolerance >> 6;
         let chord = way(self.from, to);
+        let length = i128::from(distance(chord.0, chord.1));
         let mut points = [self.from; 17];
         let mut reach = 0;
         for (part, point) in (0_u64..).zip(&mut points).skip(1) {
             *point = self.curve.at(self.parameter.wrapping_add(span.wrapping_mul(part) >> 4));
-            if !self.is_near(*point, to, chord) {
+            if !self.is_near(*point, to, (chord, length)) {
                 return Fit::Poor;
             }
             let (x, z) = way(self.from, *point);
@@ -168,9 +168,8 @@ impl<C: Sampled> Chords<C> {
         }
     }
 
-    /// Whether a point of the curve is near enough to the chord to `to`.
-    fn is_near(&self, at: Place, to: Place, chord: (i64, i64)) -> bool {
-        let length = i128::from(distance(chord.0, chord.1));
+    /// Whether a point of the curve is near enough to the chord to `to` with its length.
+    fn is_near(&self, at: Place, to: Place, (chord, length): ((i64, i64), i128)) -> bool {
         let (px, pz) = way(self.from, at);
         let (along, across) = parts((px, pz), chord);
         // beyond its ends the chord is as far as they are
@@ -182,6 +181,7 @@ impl<C: Sampled> Chords<C> {
     }
 }
 
+/// From one place to another.
 const fn way(from: Place, to: Place) -> (i64, i64) {
     (to.0.wrapping_sub(from.0), to.1.wrapping_sub(from.1))
 }
