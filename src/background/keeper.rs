@@ -66,9 +66,12 @@ impl Keeper {
         }
         let sum = check(self.seed, &standing);
         if self.standing != Some(standing) {
+            // neither record of what moves goes with it; one that is left could count as the newest if it came back
+            for first in PLACES {
+                memory.write(first.wrapping_add(MOVING), &[0]);
+            }
             let [a, b, c, d, e, f] = standing;
             memory.write(0, &[a, b, c, d, e, f, sum]);
-            // neither record of what moves goes with it
             (self.standing, self.moving) = (Some(standing), None);
         }
         if self.moving != Some(moving) {
@@ -280,7 +283,8 @@ mod tests {
 
     proptest! {
         /// Power goes after any word: what is found is what was kept last or before it, or, where what stands was being
-        /// written, nothing. A keeper that finds it goes on.
+        /// written, an earlier one (two writes in a row that were cut short may bring it back) or nothing. A keeper that finds
+        /// it goes on.
         #[test]
         fn whenever_the_power_goes_what_is_found_was_true(
             history in prop::collection::vec((anything(), 0..20_usize), 1..12), noise in any::<[u32; WORDS]>(),
@@ -288,19 +292,21 @@ mod tests {
             let mut memory = Memory::new(noise);
             let (mut keeper, mut known) = Keeper::new(&machine(), &memory);
             prop_assert_eq!(known, None);
+            let mut earlier = heapless::Vec::<Kept, 12>::new();
             for (kept, left) in history {
                 memory.left = left;
                 keeper.keep(&kept, &mut memory);
                 let (after, found) = Keeper::new(&machine(), &memory);
                 let stands = known.is_some_and(|known| (known.kept, known.wear, known.datum) == (kept.kept, kept.wear, kept.datum));
-                if left >= 13 {
+                if left >= 15 {
                     prop_assert_eq!(found, Some(kept));
                 } else if stands {
                     prop_assert!(found == Some(kept) || found == known, "{found:?}");
                 } else {
-                    prop_assert!(found.is_none() || found == Some(kept) || found == known, "{found:?}");
+                    prop_assert!(found.is_none_or(|found| found == kept || earlier.contains(&found)), "{found:?}");
                 }
                 memory.left = usize::MAX;
+                earlier.push(kept).unwrap();
                 (keeper, known) = (after, found);
             }
         }
