@@ -145,9 +145,11 @@ fn the_samples_are_of_all_kinds() {
     for _ in 0..200 {
         let program = prop::collection::vec((moves(), pace()), 40).new_tree(&mut runner).unwrap().current();
         motions(&machine, &program, |motion| {
-            if let Some(Outline { shape: crate::block::again::Shape::Arc(..), end, limit, .. }) = Outline::of(motion) {
+            if let Some(Outline { shape: crate::block::again::Shape::Arc(..), end, continues, .. }) =
+                Outline::of(motion)
+            {
                 arcs += 1;
-                halves += i32::from(limit.is_some());
+                halves += i32::from(continues);
                 whole += i32::from(end == (0, 0));
             }
             long += i32::from(Slot::pack(&Kept { line: 1, apart: false, outline: Outline::of(motion) }).1.is_some());
