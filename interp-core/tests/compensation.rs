@@ -231,6 +231,73 @@ fn nothing_drifts_over_random_moves_and_home_is_home() {
     assert_eq!((lathe.program(), lathe.beyond()), ([0; 2], [0; 2]));
 }
 
+/// The screw's error is that of the machine's own place, whatever the tool's place is called.
+#[test]
+fn a_pitch_table_stays_where_the_screw_is() {
+    let due = |nm: f64| -error_nm(nm) / PULSE[1];
+    let warm = Temperatures { reference: 20_000, screws: 33_000 };
+    for (play, renamed) in [(0, 0), (0, 1), (20, 1), (20, 2)] {
+        let machine = bare().compensated(&config(0, 5, 0), &config(play, 5, 12_000), warm);
+        let mut lathe = Lathe::new(&machine);
+        fitted(&mut lathe);
+        lathe.rapid(0, 10_000_000);
+        lathe.run();
+        let given = lathe.channel.compensation(Axis::Z);
+        match renamed {
+            // a zero is set, an offset is kept
+            1 => assert!(lathe.channel.set_position(Lattice { x: 0, z: 0 })),
+            2 => lathe.channel.set_offset(Lattice { x: 0, z: -4_000 }),
+            _ => {}
+        }
+        assert_eq!(lathe.channel.compensation(Axis::Z), given);
+        let stands = lathe.motor;
+        for _ in 0..20 {
+            lathe.tick();
+        }
+        assert_eq!(lathe.motor, stands);
+        let from = lathe.channel.position().z;
+        let nm = |place: i32| Length::from_nm(i64::from(place) * 2_500).unwrap();
+        lathe.builder = Builder::new(&machine, Point { x: Length::ZERO, z: nm(from) });
+        // 7 mm on in plus, to 17 mm of the screw
+        lathe.rapid(0, (i64::from(from) + 2_800) * 2_500);
+        lathe.run();
+        let more = f64::from(lathe.motor[1] - stands[1] - 2_800);
+        let warmer = -12e-6 * 13.0 * 7e6 / PULSE[1];
+        assert!((more - (due(17e6) - due(10e6) + warmer)).abs() <= 1.01, "{more} pulses, renamed {renamed}");
+    }
+}
+
+/// Home tells where the screw is.
+#[test]
+fn a_pitch_table_follows_the_place_that_is_made_known() {
+    let machine = bare().compensated(&config(0, 5, 0), &config(0, 5, 0), Temperatures::default());
+    let mut lathe = Lathe::new(&machine);
+    fitted(&mut lathe);
+    // it stands 20 mm from home, and calls that nothing
+    lathe.channel.stand_at(Axis::Z, 8_000);
+    lathe.rapid(0, 10_000_000);
+    lathe.run();
+    let due = (error_nm(20e6) - error_nm(30e6)) / PULSE[1];
+    assert!((f64::from(lathe.beyond()[1]) - due).abs() <= 1.01, "{:?} of {due}", lathe.beyond());
+}
+
+/// What compensates is made to its end though nothing else moves any more, and with no pulses made nothing is given.
+#[test]
+fn what_is_due_is_made_at_rest_and_nothing_while_the_pins_are_mute() {
+    let machine = bare().compensated(&config(0, 5, 0), &config(200, 5, 0), Temperatures::default());
+    let mut lathe = Lathe::new(&machine);
+    assert!(lathe.channel.mute(true));
+    lathe.rapid(0, -1_000_000);
+    lathe.run();
+    assert_eq!((lathe.motor, lathe.channel.compensation(Axis::Z)), ([0; 2], 0));
+    assert!(lathe.channel.set_position(Lattice::default()) && lathe.channel.mute(false));
+    lathe.builder = Builder::new(&machine, Point::default());
+    lathe.rapid(0, -1_000_000);
+    lathe.run();
+    assert_eq!(lathe.motor[1], -400 - 80);
+    assert!(!lathe.channel.owes());
+}
+
 #[test]
 fn the_motors_limits_hold_with_compensation_live() {
     let machine =

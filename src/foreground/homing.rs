@@ -87,6 +87,7 @@ impl Foreground<'_> {
         }
         if self.channel.set_position(position) {
             self.channel.set_offset(offset);
+            self.channel.stand_at(axis, place);
             *self.desk.verified.of_mut(axis) = true;
             self.desk.closed_loop.forget(axis);
         }

@@ -7,6 +7,8 @@ use core::sync::atomic::Ordering::Relaxed;
 
 use interp_core::units::{Lattice, PulseSize};
 
+use super::desk::part;
+use super::inputs::AXES;
 use super::published::Published;
 use super::{Foreground, PerAxis};
 
@@ -55,6 +57,9 @@ impl Foreground<'_> {
         let desk = &mut self.desk;
         (desk.kept, desk.wear, desk.datum, desk.interrupted) = (kept.kept, kept.wear, kept.datum, kept.line);
         desk.verified = PerAxis { x: false, z: false };
+        for axis in AXES {
+            self.channel.stand_at(axis, part(self.place(), axis));
+        }
     }
 }
 

@@ -68,6 +68,8 @@ pub struct Situation {
     pub moves: bool,
     /// A handwheel's axis moves, or is about to.
     pub hands: bool,
+    /// Cycle start was given and waits for the handwheels.
+    pub starting: bool,
     /// A path of the machine's own (a contour, a power feed) is in the channel, not a program.
     pub own_path: bool,
     /// Why the machine is locked.
@@ -178,7 +180,7 @@ fn start(now: &Situation) -> Option<Refusal> {
         Mode::Retrace if goes_on => None,
         Mode::Handwheel | Mode::Power | Mode::Homing | Mode::Retrace => Some(Refusal::WrongMode(Mode::Automatic)),
     };
-    let runs = matches!(now.state, State::Running | State::Filling | State::Resetting);
+    let runs = matches!(now.state, State::Running | State::Filling | State::Resetting) || now.starting;
     locked(now)
         .or(mode)
         .or(runs.then_some(Refusal::Running))

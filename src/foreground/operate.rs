@@ -63,6 +63,9 @@ impl Foreground<'_> {
         for axis in AXES {
             let counts = *counts.of(axis);
             let click = self.desk.wheels.click(axis, counts);
+            // what a stop has cut off
+            let stopped = self.channel.end_stop(axis, click);
+            self.desk.wheels.drop(axis, stopped);
             if !self.may_turn(axis) {
                 self.desk.wheels.drop(axis, i32::from(counts));
                 if counts != 0 && !self.desk.settings.wheels {
@@ -129,8 +132,10 @@ impl Foreground<'_> {
             return;
         }
         let idle = matches!(self.channel.state(), State::Idle | State::Ended);
-        // a path begins when the handwheels rest: they have all of the acceleration until then
-        if idle && matches!(self.desk.mode, Mode::Linked) && !(self.channel.hands_rest() && self.begin_contour()) {
+        // a path begins when the handwheels rest: they have all of the acceleration until then; and not one in the place of the
+        // program that was started
+        let may = !self.desk.starting && self.channel.hands_rest();
+        if idle && matches!(self.desk.mode, Mode::Linked) && !(may && self.begin_contour()) {
             drop(&mut self.desk);
             return;
         }

@@ -226,7 +226,7 @@ impl Foreground<'_> {
             return;
         };
         if matches!(self.channel.state(), State::Idle | State::Ended) {
-            if !self.channel.hands_rest() {
+            if !self.channel.hands_rest() || self.desk.starting {
                 return;
             }
             if matches!(self.desk.mode, Mode::Retrace) || !self.begin_contour() {

@@ -32,6 +32,7 @@ impl Foreground<'_> {
             state,
             moves,
             hands: !self.channel.hands_rest(),
+            starting: desk.starting,
             own_path: desk.own_path,
             alarm: self.alarm,
             open: self.open,
@@ -68,6 +69,8 @@ impl Foreground<'_> {
             Command::DryRun(on) => self.desk.dry_run = on,
             Command::MachineLock(on) => self.lock(on),
             Command::Configure(machine) => {
+                // a path of the machine's own was built with the figures that end here
+                self.drop_path();
                 if self.channel.configure(&machine) {
                     self.desk.machine = machine;
                     self.seen.calm = self.desk.calm();
@@ -158,7 +161,7 @@ impl Foreground<'_> {
     /// Forgets a path of the machine's own that stands in the channel.
     pub(super) fn drop_path(&mut self) {
         if self.desk.own_path {
-            self.channel.abandon();
+            self.channel.drop_path();
             self.desk.own.clear();
             self.desk.own_path = false;
             if !matches!(self.desk.mode, Mode::Linked) {
@@ -195,9 +198,9 @@ impl Foreground<'_> {
             desk.locked = Some(Locked { position, offset, kept, wear, datum, verified });
         } else if let (false, Some(locked)) = (on, self.desk.locked.take()) {
             self.drop_path();
-            self.channel.mute(false);
             self.channel.set_position(locked.position);
             self.channel.set_offset(locked.offset);
+            self.channel.mute(false);
             let desk = &mut self.desk;
             (desk.kept, desk.wear, desk.datum) = (locked.kept, locked.wear, locked.datum);
             // what was lost meanwhile is lost; what was found was not the axes' place
@@ -257,9 +260,11 @@ impl Foreground<'_> {
         offset
     }
 
-    /// Whether an axis has moved in the last tick, or its hand has.
+    /// Whether an axis has moved in the last tick, or its hand has, or its motor goes on to compensate.
     fn moved(&self, axis: Axis) -> bool {
-        part(self.place(), axis) != part(self.seen.before, axis) || self.channel.hand_advance(axis) != 0
+        part(self.place(), axis) != part(self.seen.before, axis)
+            || self.channel.hand_advance(axis) != 0
+            || self.channel.is_compensating(axis)
     }
 
     /// After an alarm nobody may know where the axes are.

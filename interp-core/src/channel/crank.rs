@@ -84,13 +84,19 @@ impl Crank {
     }
 
     /// Forgets all motion.
-    pub(super) const fn stand(&mut self) {
+    pub(super) fn stand(&mut self) {
         self.in_thread = false;
         // another drive goes its own way: forward until it says otherwise
         self.back = false;
         self.thread.end();
         self.driven.stage = ThreadStage::None;
         self.turns = !matches!(self.drive, Drive::Time);
+        // what the contour wheel has asked for is dropped, and told
+        let counts = i32::from(core::mem::take(&mut self.counts));
+        let rest = if let Drive::Wheel(click) = self.drive { self.wheel.stop(click) } else { 0 };
+        let pulled = self.pull.is_some();
+        let dropped = counts.saturating_add(if pulled { 0 } else { rest });
+        self.driven.dropped = self.driven.dropped.saturating_add(dropped);
         self.wheel = Wheel::new();
         self.ungear();
     }
@@ -192,9 +198,10 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             Current::Motion(active) => active.done,
             Current::Nothing | Current::Dwell(_) => 0,
         });
-        self.crank.drive = drive;
         self.crank.stand();
-        self.crank.driven = Driven::default();
+        self.crank.drive = drive;
+        self.crank.turns = !matches!(drive, Drive::Time);
+        self.crank.driven = Driven { dropped: self.crank.driven.dropped, ..Driven::default() };
         Ok(())
     }
 

@@ -25,6 +25,10 @@ pub struct Hand {
     wheel: Wheel,
     follower: Follower,
     stopping: bool,
+    /// A distance was asked for outright, not by a wheel.
+    going: bool,
+    /// What a wheel had asked for when it was stopped, less what it has gone since: nm with 12 fraction bits.
+    lost: i64,
     /// Nanometres with 12 fraction bits since the beginning.
     place: i64,
     /// Pulses made of it.
@@ -34,12 +38,13 @@ pub struct Hand {
 impl Hand {
     /// At rest; nothing is asked for.
     pub const fn new() -> Self {
-        Self { wheel: Wheel::new(), follower: Follower::new(), stopping: false, place: 0, made: 0 }
+        let (wheel, follower) = (Wheel::new(), Follower::new());
+        Self { wheel, follower, stopping: false, going: false, lost: 0, place: 0, made: 0 }
     }
 
-    /// Whether it neither moves nor has to.
+    /// Whether it neither moves nor has to, and has told all that was dropped.
     pub const fn is_at_rest(&self) -> bool {
-        self.follower.advance() == 0 && self.wheel.is_at_rest()
+        self.follower.advance() == 0 && self.wheel.is_at_rest() && self.lost == 0
     }
 
     /// Advance of the last tick, nm with 12 fraction bits.
@@ -53,10 +58,37 @@ impl Hand {
         if self.stopping && counts == 0 {
             return 0;
         }
+        if self.going {
+            // a turn takes it over: it goes on as far as it has to
+            self.wheel.ask(self.braking(bounds.accel));
+        }
         let speed = self.follower.advance().saturating_abs();
-        self.stopping = false;
+        (self.stopping, self.going) = (false, false);
+        let lost = self.tell(click);
         let dropped = self.wheel.turn(click, counts, self.braking(bounds.accel), speed);
-        dropped.saturating_add(self.wheel.limit(click, room))
+        dropped.saturating_add(self.wheel.limit(click, room)).saturating_add(lost)
+    }
+
+    /// Where a stop has come to its end: the counts that the wheel had asked for and that are dropped, begun ones too.
+    pub fn end_stop(&mut self, click: Click) -> i32 {
+        if self.stopping && self.follower.advance() != 0 {
+            return 0;
+        }
+        self.stopping = false;
+        self.tell(click)
+    }
+
+    fn tell(&mut self, click: Click) -> i32 {
+        crate::drive::wheel::dropped(core::mem::take(&mut self.lost), click)
+    }
+
+    /// What a wheel asked for is dropped from here on, to be told when it stands.
+    const fn drop_rest(&mut self) {
+        if !self.going {
+            self.lost = self.lost.saturating_add(self.wheel.all());
+        }
+        self.wheel.ask(0);
+        (self.going, self.stopping) = (false, true);
     }
 
     /// How far it goes if it brakes by so much a tick, signed: v (v + a) / 2a.
@@ -68,7 +100,7 @@ impl Hand {
         if advance < 0 { braking.wrapping_neg() } else { braking }
     }
 
-    /// Drops what leads out of the room. Whether anything does.
+    /// Drops what leads out of the room, and is no wheel's. Whether anything does.
     pub fn limit(&mut self, room: Room) -> bool {
         let [least, ..] = Click::DECADES;
         !self.stopping && self.wheel.limit(least, room) != 0
@@ -76,20 +108,19 @@ impl Hand {
 
     /// Asks for a distance in the place of all asked for before.
     pub const fn go(&mut self, by: i64) {
-        self.stopping = false;
+        self.drop_rest();
+        (self.stopping, self.going) = (false, true);
         self.wheel.ask(by);
     }
 
     /// Asks for a stop, as soon as the acceleration allows.
     pub const fn stop(&mut self) {
-        self.stopping = true;
-        self.wheel.ask(0);
+        self.drop_rest();
     }
 
     /// Stops at once, from any speed: for an emergency.
     pub const fn abandon(&mut self) {
-        self.wheel.ask(0);
-        self.stopping = false;
+        self.drop_rest();
         self.follower = Follower::new();
     }
 
@@ -106,6 +137,9 @@ impl Hand {
         if self.stopping {
             let accel = i64::from(bounds.accel);
             self.follower.set(before.wrapping_sub(before.max(accel.wrapping_neg()).min(accel)));
+            if self.lost != 0 {
+                self.lost = self.lost.saturating_sub(self.follower.advance());
+            }
         } else {
             let distance = self.wheel.to_go();
             if distance == 0 && before == 0 {

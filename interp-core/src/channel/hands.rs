@@ -242,6 +242,12 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         self.hands.of(axis).hand.stop();
     }
 
+    /// Where an axis's hand has come to the end of a stop: the counts, each detent worth `click`, that a wheel had asked for
+    /// and that are dropped.
+    pub fn end_stop(&mut self, axis: Axis, click: Click) -> i32 {
+        self.hands.of(axis).hand.end_stop(click)
+    }
+
     /// Makes pulses in the next tick that are no part of the position: what a scale found missing.
     pub const fn correct(&mut self, x: i32, z: i32) {
         self.hands.correction = (x, z);
@@ -272,7 +278,8 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
 
     /// Calls the offset another one; nothing moves.
     pub const fn set_offset(&mut self, offset: Lattice) {
+        let before = self.tool();
         self.hands.offset = offset;
-        self.compensation.rename(self.tool());
+        self.compensation.rename(before, self.tool());
     }
 }

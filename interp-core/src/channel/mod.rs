@@ -266,9 +266,23 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// planned; where the tool is nobody knows.
     pub fn abandon(&mut self) {
         self.speed = 0;
-        self.compensation.stop();
+        // a pulse that is owed is not made any more: the place is that of the pins
+        let owed = self.superposed.abandon();
+        self.position.x = self.position.x.wrapping_sub(owed.0);
+        self.position.z = self.position.z.wrapping_sub(owed.1);
+        self.compensation.stop(self.tool());
         self.hands.abandon();
         self.forget();
+    }
+
+    /// Forgets all blocks of a path that stands. What the hands and the compensation do goes on. False, and nothing changes,
+    /// while the path moves.
+    pub fn drop_path(&mut self) -> bool {
+        let stands = self.speed == 0 && !self.crank.thread.is_busy();
+        if stands {
+            self.forget();
+        }
+        stands
     }
 
     /// Feed hold: brakes along the path to standstill, or does not begin to move. False where nothing runs.
@@ -300,12 +314,13 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         self.overrides.feed
     }
 
-    /// Makes no pulses from now on, or makes them again: the position alone moves. False, and nothing changes, while anything
-    /// moves.
+    /// Makes no pulses from now on, or makes them again: the position alone moves. Where pulses are made again the motors stand
+    /// at the position told before. False, and nothing changes, while anything moves.
     pub fn mute(&mut self, muted: bool) -> bool {
         let rests = self.speed == 0 && self.hands.at_rest() && self.settled();
         if rests {
             self.superposed.mute(muted);
+            self.compensation.mute(muted, self.tool());
         }
         rests
     }
@@ -327,14 +342,27 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         self.memory.borrow_mut().ahead.set_feed(feed);
     }
 
-    /// Says where the tool is. False, and nothing changes, while anything moves.
+    /// Calls the tool's place another one; nothing moves, and the screws are where they were. False, and nothing changes, while
+    /// anything moves.
     pub fn set_position(&mut self, position: Lattice) -> bool {
         let idle = matches!(self.state, State::Idle | State::Ended) && self.hands.at_rest();
         if idle {
+            let before = self.tool();
             self.position = position;
-            self.compensation.stand_at(self.tool());
+            self.compensation.rename(before, self.tool());
         }
         idle
+    }
+
+    /// Says where an axis stands in the machine's own coordinates, pulses: that is where its screw's errors are looked up from
+    /// now on. Its compensation counts as given there. A new channel's position is in the machine's own coordinates.
+    pub fn stand_at(&mut self, axis: Axis, place: i32) {
+        let tool = self.tool();
+        let tool = match axis {
+            Axis::X => tool.x,
+            Axis::Z => tool.z,
+        };
+        self.compensation.stand_at(axis, place, tool);
     }
 
     /// Works with other figures from now on. False, and nothing changes, while a cycle runs.
@@ -411,9 +439,20 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     }
 
     /// Whether pulses are still to come that are added to a path that stands.
-    pub fn owes(&self) -> bool {
-        let stands = matches!(self.state, State::Holding | State::Stopped);
-        self.superposed.owes() || stands && self.compensation.is_on() && !self.compensation.rests()
+    pub const fn owes(&self) -> bool {
+        let runs = matches!(self.state, State::Running | State::Filling | State::Resetting);
+        self.superposed.owes() || self.crank.thread.is_busy() || !runs && self.lags()
+    }
+
+    /// Whether the compensation is behind what the place asks for.
+    #[inline]
+    const fn lags(&self) -> bool {
+        self.compensation.is_on() && !self.compensation.rests(self.tool())
+    }
+
+    /// Whether an axis's motor is still on its way to where its compensation wants it.
+    pub const fn is_compensating(&self, axis: Axis) -> bool {
+        self.compensation.is_on() && !self.compensation.axis_rests(axis)
     }
 
     /// Length of the present motion that is left, nm with 12 fraction bits.
@@ -445,9 +484,11 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let retract = self.crank.thread.pulses();
         let (x, z) = self.by_hand(retract);
         let x = x.wrapping_add(retract);
-        if in_cycle || !self.hands.at_rest() || x != 0 || z != 0 {
+        let moves = in_cycle || !self.hands.at_rest();
+        // what the compensation lacks when all has come to rest is made then
+        if moves || x != 0 || z != 0 || self.lags() {
             if x != 0 || z != 0 || self.compensation.is_on() {
-                self.superpose(x, z);
+                self.superpose(x, z, moves);
             }
             if in_cycle {
                 output = self.run(out);
@@ -476,21 +517,24 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             self.forget();
         }
         let driven = self.crank.driven;
+        // each count is told once
+        self.crank.driven.dropped = 0;
         Report { state: self.state, in_cycle, output, line: self.line, speed: self.speed, driven }
     }
 
-    /// The program's place with what the hands have added.
+    /// The program's place with what the hands have added, and with what X is out of a thread.
     const fn tool(&self) -> Lattice {
         let (position, offset) = (self.position, self.hands.offset());
-        Lattice { x: position.x.wrapping_add(offset.x), z: position.z.wrapping_add(offset.z) }
+        let x = position.x.wrapping_add(offset.x).wrapping_add(self.crank.thread.out());
+        Lattice { x, z: position.z.wrapping_add(offset.z) }
     }
 
-    /// Adds so many pulses, and what the compensation gives, to the tick.
-    fn superpose(&mut self, x: i32, z: i32) {
+    /// Adds so many pulses, and what the compensation gives, to the tick, in which anything else `moves` or may.
+    fn superpose(&mut self, x: i32, z: i32, moves: bool) {
         let (mut x, mut z) = (x, z);
         if self.compensation.is_on() {
             let at = self.tool();
-            let more = self.compensation.tick(at);
+            let more = self.compensation.tick(at, moves);
             (x, z) = (x.wrapping_add(more.0), z.wrapping_add(more.1));
         }
         if x != 0 || z != 0 {

@@ -151,6 +151,13 @@ impl Superposed {
         self.live
     }
 
+    /// Forgets what is owed, between two ticks: the pulses of X and Z that are never made.
+    pub fn abandon(&mut self) -> (i32, i32) {
+        let owed = (i32::from(self.x.owed), i32::from(self.z.owed));
+        *self = Self { muted: self.muted, ..Self::new() };
+        owed
+    }
+
     /// How many of `count` steps of the program, due at `times`, are made past it in a row, and as steps of which kinds: up to
     /// the next pulse that is added and the next step that moves an axis which owes one. What is due before the first of them
     /// is made here. `straight` tells how many steps, of so many, are straight before the next diagonal one.

@@ -162,6 +162,11 @@ impl ThreadHold {
         if self.retract.is_live() { self.retract.tick() } else { 0 }
     }
 
+    /// By how many pulses X is out.
+    pub(super) const fn out(&self) -> i32 {
+        self.retract.pulses()
+    }
+
     /// X stands where it is from now on: by how many pulses that is off the program.
     pub(super) const fn take(&mut self) -> i32 {
         self.retract.take()
@@ -278,7 +283,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
 
     /// By how many pulses X is pulled out of a thread: that far the tool is off [`position`](Self::position).
     pub const fn retracted(&self) -> i32 {
-        self.crank.thread.retract.pulses()
+        self.crank.thread.out()
     }
 
     /// A feed a turn stands, since the spindle does.

@@ -1,14 +1,18 @@
 //! Compensation: what a motor has to go beyond the program so that the slide is where the program says.
 //!
 //! The program's position stays as it is; the motor goes to program + compensation. For each axis it is the sum of
-//! [`backlash`], [`pitch`] and [`thermal`], a function of the program's position, of the way it came there, and of the
+//! [`backlash`], [`pitch`] and [`thermal`], a function of the machine's own place, of the way it came there, and of the
 //! temperature: nothing is summed up, so nothing drifts. In each tick a
 //! [`Follower`] moves what is given towards that sum, within
 //! a share of the axis's speed and acceleration that the program leaves free; the whole pulses it moves by are
 //! [superposed](crate::channel::superposed) on the program's.
 //!
-//! Amounts are in pulses with [`FRACTION`] fraction bits. Where the position is made known (when the channel is made or
-//! set up anew) the tool is taken to stand right: the compensation of that place counts as given, and nothing moves.
+//! **The machine's own place.** A screw's errors belong to the screw. So what the tool's place is called (an offset that is
+//! kept, a zero that is set) changes nothing here: a *shift* leads from the tool's coordinates to the machine's.
+//!
+//! Amounts are in pulses with [`FRACTION`] fraction bits. Where the machine's place is made known (when the channel is made,
+//! at home, with other figures) the tool is taken to stand right: the compensation of that place counts as given, and nothing
+//! moves. Otherwise what is due is made to the pulse, also after the program and the hands have come to rest.
 
 pub mod backlash;
 pub mod pitch;
@@ -168,7 +172,7 @@ struct AxisCompensation {
     pitch: Pitch,
     thermal: Thermal,
     follower: Follower,
-    /// What is to be given at the program's position.
+    /// What is to be given at the machine's place.
     target: i64,
 }
 
@@ -196,16 +200,46 @@ impl AxisCompensation {
         self.follower = Follower::at(self.target);
     }
 
-    fn tick(&mut self, moved: i32, position: i32) -> i32 {
+    /// Takes other figures where they are others; a machine that stands at `position` counts as right with those.
+    fn configure(&mut self, plan: AxisPlan, warmer: i32, position: i32) {
+        let same = self.plan == plan && self.thermal.is_for(warmer);
+        if same {
+            return;
+        }
+        self.plan = plan;
+        self.backlash.configure(plan.backlash, plan.distance);
+        self.pitch.configure(plan.pulse);
+        self.thermal.configure(plan.thermal, plan.origin);
+        self.thermal.heat(warmer, true);
+        self.stand(position);
+    }
+
+    fn tick(&mut self, moved: i32, position: i32, warms: bool) -> i32 {
         // where neither the slide nor the screw's length changes, the target stays
-        let still = moved == 0 && self.thermal.is_steady() && self.follower.rests_at(self.target);
+        let still = moved == 0 && (!warms || self.thermal.is_steady()) && self.follower.rests_at(self.target);
         if !self.plan.on || still {
             return 0;
         }
         self.backlash.moved(moved);
-        self.thermal.tick();
+        if warms {
+            self.thermal.tick();
+        }
         self.target = self.at(position);
         self.follower.follow(self.target, &self.plan.pace)
+    }
+
+    /// The axis has `moved` to `position`; what that asks for is still to be given.
+    fn see(&mut self, moved: i32, position: i32) {
+        if self.plan.on && moved != 0 {
+            self.backlash.moved(moved);
+            self.target = self.at(position);
+        }
+    }
+
+    /// Stops where it is, from any speed: what is missing is given when the axis moves again.
+    const fn stop(&mut self) {
+        self.follower.stop();
+        self.target = self.follower.place();
     }
 
     const fn rests(&self) -> bool {
@@ -222,51 +256,59 @@ impl AxisCompensation {
 #[derive(Clone, Debug)]
 pub struct Compensation {
     on: bool,
+    /// Only the display moves: nothing is given.
+    muted: bool,
     x: AxisCompensation,
     z: AxisCompensation,
-    /// The program's position at the last tick.
+    /// The machine's own place at the last tick.
     at: Lattice,
+    /// From the tool's coordinates to the machine's.
+    shift: Lattice,
     temperatures: Temperatures,
 }
 
 impl Compensation {
-    /// Of a machine that stands at `position`, which counts as right.
-    pub fn new(plan: &Plan, position: Lattice) -> Self {
+    /// Of a machine that stands at `place`, which counts as right and is the machine's own.
+    pub fn new(plan: &Plan, place: Lattice) -> Self {
         let mut new = Self {
             on: plan.is_on(),
+            muted: false,
             x: AxisCompensation::new(plan.x),
             z: AxisCompensation::new(plan.z),
-            at: position,
+            at: place,
+            shift: Lattice { x: 0, z: 0 },
             temperatures: plan.temperatures,
         };
         new.heat(true);
-        new.stand(position);
+        new.x.stand(place.x);
+        new.z.stand(place.z);
         new
     }
 
-    /// Goes on with other figures, standing at `position`, which counts as right. Tables are kept.
-    pub fn configure(&mut self, plan: &Plan, position: Lattice) {
-        for (axis, plan) in [(&mut self.x, plan.x), (&mut self.z, plan.z)] {
-            axis.plan = plan;
-            axis.backlash.configure(plan.backlash, plan.distance);
-            axis.pitch.configure(plan.pulse);
-            axis.thermal.configure(plan.thermal, plan.origin);
-        }
-        self.on = plan.is_on();
+    /// Goes on with other figures, the tool standing at `tool`. An axis whose figures are others counts as right; else what is
+    /// due stays due. Tables are kept.
+    pub fn configure(&mut self, plan: &Plan, tool: Lattice) {
+        let place = self.stand_still(tool);
         self.temperatures = plan.temperatures;
-        self.at = position;
-        self.heat(true);
-        self.stand(position);
+        let warmer = self.warmer();
+        self.x.configure(plan.x, warmer, place.x);
+        self.z.configure(plan.z, warmer, place.z);
+        self.on = plan.is_on();
     }
 
-    /// Puts a pitch error table in the place of an axis's last one; the machine stands at `position`, which counts as
-    /// right.
-    pub fn set_pitch_table(&mut self, axis: Axis, table: &PitchTable, position: Lattice) {
+    /// Puts a pitch error table in the place of an axis's last one; the tool stands at `tool`, which counts as right.
+    pub fn set_pitch_table(&mut self, axis: Axis, table: &PitchTable, tool: Lattice) {
+        let place = self.stand_still(tool);
         match axis {
-            Axis::X => self.x.pitch.set(table),
-            Axis::Z => self.z.pitch.set(table),
+            Axis::X => {
+                self.x.pitch.set(table);
+                self.x.stand(place.x);
+            }
+            Axis::Z => {
+                self.z.pitch.set(table);
+                self.z.stand(place.z);
+            }
         }
-        self.stand(position);
     }
 
     /// Sets the temperature of the screws, thousandths of a degree Celsius; it acts slowly or at once.
@@ -275,61 +317,111 @@ impl Compensation {
         self.heat(!slowly);
     }
 
+    const fn warmer(&self) -> i32 {
+        self.temperatures.screws.saturating_sub(self.temperatures.reference)
+    }
+
     fn heat(&mut self, at_once: bool) {
-        let warmer = self.temperatures.screws.saturating_sub(self.temperatures.reference);
+        let warmer = self.warmer();
         for axis in [&mut self.x, &mut self.z] {
             axis.thermal.heat(warmer, at_once);
         }
     }
 
-    /// The machine stands at `position`, which counts as right; an axis whose place is as it was is not touched.
-    pub fn stand_at(&mut self, position: Lattice) {
-        if position.x != self.at.x {
-            self.x.stand(position.x);
+    /// The machine's own place of an axis is `place`, where the tool's coordinate is `tool`: it counts as right there.
+    pub fn stand_at(&mut self, axis: Axis, place: i32, tool: i32) {
+        let shift = place.wrapping_sub(tool);
+        match axis {
+            Axis::X => self.shift.x = shift,
+            Axis::Z => self.shift.z = shift,
         }
-        if position.z != self.at.z {
-            self.z.stand(position.z);
+        // with no pulses made the motors stand somewhere else
+        if self.muted {
+            return;
         }
-        self.at = position;
+        match axis {
+            Axis::X => {
+                self.at.x = place;
+                self.x.stand(place);
+            }
+            Axis::Z => {
+                self.at.z = place;
+                self.z.stand(place);
+            }
+        }
     }
 
-    /// The place is called another one; nothing has moved.
-    pub const fn rename(&mut self, position: Lattice) {
-        self.at = position;
+    /// The tool's place, `before` up to now, is called `after`; nothing has moved.
+    pub const fn rename(&mut self, before: Lattice, after: Lattice) {
+        self.shift.x = self.shift.x.wrapping_add(before.x).wrapping_sub(after.x);
+        self.shift.z = self.shift.z.wrapping_add(before.z).wrapping_sub(after.z);
     }
 
-    fn stand(&mut self, position: Lattice) {
-        self.x.stand(position.x);
-        self.z.stand(position.z);
+    /// Gives nothing from now on, the tool standing at `tool`; or goes on, where the tool is called `tool` now.
+    pub fn mute(&mut self, muted: bool, tool: Lattice) {
+        if muted {
+            self.stand_still(tool);
+        } else {
+            self.shift = Lattice { x: self.at.x.wrapping_sub(tool.x), z: self.at.z.wrapping_sub(tool.z) };
+        }
+        self.muted = muted;
+    }
+
+    /// The machine's own place of the tool, which stands; it is noted as that of the last tick.
+    fn stand_still(&mut self, tool: Lattice) -> Lattice {
+        if !self.muted {
+            let place = self.place(tool);
+            self.x.see(place.x.wrapping_sub(self.at.x), place.x);
+            self.z.see(place.z.wrapping_sub(self.at.z), place.z);
+            self.at = place;
+        }
+        self.at
+    }
+
+    const fn place(&self, tool: Lattice) -> Lattice {
+        Lattice { x: tool.x.wrapping_add(self.shift.x), z: tool.z.wrapping_add(self.shift.z) }
     }
 
     /// Whether anything is compensated.
     #[inline]
     pub const fn is_on(&self) -> bool {
-        self.on
+        self.on && !self.muted
     }
 
     /// Whether each motor stands where it has to, but for less than a pulse.
     pub const fn settled(&self) -> bool {
-        self.x.settled() && self.z.settled()
+        !self.is_on() || self.x.settled() && self.z.settled()
     }
 
-    /// Whether each motor stands where it has to, and no pulse is to come.
-    pub const fn rests(&self) -> bool {
-        self.x.rests() && self.z.rests()
+    /// Whether each motor stands where it has to with the tool at `tool`, and no pulse is to come.
+    pub const fn rests(&self, tool: Lattice) -> bool {
+        let place = self.place(tool);
+        let seen = place.x == self.at.x && place.z == self.at.z;
+        !self.is_on() || seen && self.x.rests() && self.z.rests()
     }
 
-    /// The pulses that each axis has to go in this tick beyond the program, which has got to `position`.
-    pub fn tick(&mut self, position: Lattice) -> (i32, i32) {
-        let moved = (position.x.wrapping_sub(self.at.x), position.z.wrapping_sub(self.at.z));
-        self.at = position;
-        (self.x.tick(moved.0, position.x), self.z.tick(moved.1, position.z))
+    /// Whether an axis's motor stands where it has to.
+    pub const fn axis_rests(&self, axis: Axis) -> bool {
+        match axis {
+            Axis::X => self.x.rests(),
+            Axis::Z => self.z.rests(),
+        }
     }
 
-    /// Stops where it is, from any speed.
-    pub const fn stop(&mut self) {
-        self.x.follower.stop();
-        self.z.follower.stop();
+    /// The pulses that each axis has to go in this tick beyond the tool, which has got to `tool`. Screws that get warmer do so
+    /// only where it `warms`: a machine at rest makes what is due and then stands.
+    pub fn tick(&mut self, tool: Lattice, warms: bool) -> (i32, i32) {
+        let place = self.place(tool);
+        let moved = (place.x.wrapping_sub(self.at.x), place.z.wrapping_sub(self.at.z));
+        self.at = place;
+        (self.x.tick(moved.0, place.x, warms), self.z.tick(moved.1, place.z, warms))
+    }
+
+    /// Stops where it is, from any speed, with the tool at `tool`.
+    pub fn stop(&mut self, tool: Lattice) {
+        self.stand_still(tool);
+        self.x.stop();
+        self.z.stop();
     }
 
     /// Pulses that the motor of an axis is due beyond the program since the position was last made known.

@@ -36,13 +36,23 @@ impl Thermal {
 
     /// The screw is `warmer` than at reference, thousandths of a kelvin; more than 200 K count as that.
     pub fn heat(&mut self, warmer: i32, at_once: bool) {
-        let warmer = i64::from(warmer.clamp(-200_000, 200_000));
-        // 1e-12 of a length: times 2^36 / 1e12; the product is below 2^53
-        self.goal = self.expansion.wrapping_mul(warmer).wrapping_mul(68_719) / 1_000_000;
+        self.goal = self.longer(warmer);
         self.new = true;
         if at_once {
             self.ratio = self.goal;
         }
+    }
+
+    /// Relative change of length by so much heat.
+    fn longer(&self, warmer: i32) -> i64 {
+        let warmer = i64::from(warmer.clamp(-200_000, 200_000));
+        // 1e-12 of a length: times 2^36 / 1e12; the product is below 2^53
+        self.expansion.wrapping_mul(warmer).wrapping_mul(68_719) / 1_000_000
+    }
+
+    /// Whether it is on its way to this heat, or has it.
+    pub fn is_for(&self, warmer: i32) -> bool {
+        self.goal == self.longer(warmer)
     }
 
     /// Whether the screw is as long as its temperature says, and was in the last tick.

@@ -59,6 +59,11 @@ impl Wheel {
         self.to_go
     }
 
+    /// All that is asked for.
+    pub const fn all(&self) -> i64 {
+        self.to_go.saturating_add(self.waiting)
+    }
+
     /// The path went on by so much.
     pub const fn went(&mut self, by: i64) {
         self.to_go = self.to_go.wrapping_sub(by);
@@ -116,7 +121,7 @@ impl Wheel {
 }
 
 /// Counts that a length is worth, begun ones too.
-fn dropped(length: i64, click: Click) -> i32 {
+pub(crate) fn dropped(length: i64, click: Click) -> i32 {
     let count = click.count().unsigned_abs();
     let up = length.unsigned_abs().saturating_add(count.saturating_sub(1));
     let whole = up.checked_div(count).unwrap_or(0).cast_signed();

@@ -19,6 +19,7 @@
 pub mod curves;
 pub mod end_test;
 pub mod nurbs;
+#[cfg(feature = "methods")]
 pub(crate) mod quartic;
 pub mod spline;
 

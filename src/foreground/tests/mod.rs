@@ -8,6 +8,7 @@
 )]
 
 mod coordinates;
+mod counts;
 mod drives;
 mod intervention;
 mod panel;

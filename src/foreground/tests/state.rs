@@ -68,6 +68,7 @@ const REST: Situation = Situation {
     state: State::Idle,
     moves: false,
     hands: false,
+    starting: false,
     own_path: false,
     alarm: None,
     open: false,
