@@ -166,6 +166,10 @@ impl Control {
             let refusal = Refusal::WrongMode(Mode::ManualData);
             return self.refuse(line, refusal.name(), &refusal.to_string());
         }
+        // one that is held goes on by cycle start: what is typed would begin where that has not got to yet
+        if !matches!(foreground.state(), State::Idle | State::Ended) {
+            return self.refuse(line, Refusal::CycleUnderWay.name(), &Refusal::CycleUnderWay.to_string());
+        }
         let typed = match self.background.typed(text, place(foreground)) {
             Ok(typed) => typed,
             Err(failure) => return self.outcome(line, Err(failure)),

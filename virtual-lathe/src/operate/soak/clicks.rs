@@ -49,6 +49,13 @@ impl Clicks {
         self.base = None;
     }
 
+    /// The axis was stopped on its way: a count that was begun is dropped as a whole.
+    pub(super) const fn broken(&mut self) {
+        if let Some(base) = &mut self.base {
+            base.slack += 1;
+        }
+    }
+
     /// A tick. `Some(true)` where the books were found right, and tell something.
     pub(super) fn tick(&mut self, turned: &Turned, pulse: PulseSize) -> Result<bool, String> {
         let place = i64::from(turned.place);

@@ -30,8 +30,9 @@ use super::coverage::Coverage;
 use super::track::{Track, part};
 
 /// Pulses that the pins may be off the place shown while an axis moves: one is owed where it would turn the axis round; and
-/// those that the shaper holds back, at most two, as it takes a pulse at a clock that lies before the one before has had its time.
-const IN_FLIGHT: i32 = 3;
+/// those that the shaper keeps for the next tick, as they have no room in this one. It keeps 12 events at most, two a pulse; one
+/// more would be lost, which shows at rest.
+const IN_FLIGHT: i32 = 7;
 
 /// Ticks without a pulse after which it stands: what is owed waits 16.
 const STANDS: u32 = 20;
@@ -74,6 +75,7 @@ struct AxisBooks {
     allowed: Option<(i32, i32)>,
     bound: Option<(i32, i32)>,
     clicks: Clicks,
+    /// The place shown, and ticks since it or the pins moved.
     at: i32,
     still: u32,
     verified: bool,
@@ -239,6 +241,13 @@ impl Oracle {
         self.axes.iter_mut().for_each(|books| books.clicks.forget());
     }
 
+    /// All was stopped: what the wheels had asked for is told as dropped, up to a count that was begun.
+    pub(super) fn reset(&mut self, tick: u64) {
+        self.stirred = self.stirred.max(tick);
+        self.axes.iter_mut().for_each(|books| books.clicks.broken());
+        self.track = self.track.take().filter(Track::has_begun);
+    }
+
     /// Something begins, and may be held at once.
     pub(super) fn stirs(&mut self, tick: u64) {
         self.stirred = self.stirred.max(tick);
@@ -365,7 +374,10 @@ impl Oracle {
         if self.locked && at != before {
             return Err(("rest", format!("machine lock is on, and the pins moved {}", by())));
         }
-        if !shown.outputs.motors && at != before {
+        // an emergency stop ends the planning at once; of what was planned before, the shaper may have had no room in its tick
+        let flown = (at.x - before.x).abs() <= IN_FLIGHT && (at.z - before.z).abs() <= IN_FLIGHT;
+        let cut_off = matches!(self.alarm, (Some(Alarm::Emergency), raised) if since(raised) == 0) && flown && !path;
+        if !shown.outputs.motors && at != before && !cut_off {
             return Err(("rest", format!("the motors are off, and the pins moved {}", by())));
         }
         let (alarm, raised) = self.alarm;
@@ -411,7 +423,10 @@ impl Oracle {
         let Some(books) = self.axes.get_mut(index) else { return Ok(()) };
         let (axis, shown) = (books.axis, tick.shown);
         let pins = part(at, axis);
-        books.still = if pins == part(before, axis) { books.still.saturating_add(1) } else { 0 };
+        // a pulse that is planned now may be made in the next tick, as the shaper has no room for it before
+        let rests = pins == part(before, axis) && part(shown.position, axis) == books.at;
+        books.still = if rests { books.still.saturating_add(1) } else { 0 };
+        books.at = part(shown.position, axis);
         let plain = pins - *tick.compensation.of(axis);
         let verified = *shown.verified.of(axis);
         if verified && !books.verified && shown.mode == Mode::Homing && !self.locked {
@@ -495,6 +510,9 @@ impl Oracle {
         let moved = shown.programmed != self.programmed;
         self.programmed = shown.programmed;
         let Some(track) = &mut self.track else { return Ok(()) };
+        if track.waits(shown.state) && shown.alarm.is_none() {
+            return Ok(());
+        }
         if matches!(shown.state, State::Idle) || shown.alarm.is_some() {
             if matches!(shown.state, State::Idle) {
                 coverage.happened("cycle reset");
@@ -550,7 +568,11 @@ impl Oracle {
     }
 
     /// The session is over: what the pins have broken.
-    pub(super) fn finish(self) -> Option<Failure> {
+    pub(super) fn finish(mut self) -> Option<Failure> {
+        // notes may end in the midst of a motion: what would follow is not that all stands
+        if self.axes.iter().any(|books| books.still < STANDS) {
+            self.watch.cut();
+        }
         let faults = self.watch.finish();
         let first = faults.first().first()?;
         let tick = first.clocks / u64::from(interp_core::config::TICK_CLOCKS);

@@ -538,7 +538,7 @@ impl<'s, H: Hand> Runner<'s, H> {
             Command::Reset => {
                 self.background.stop();
                 self.spindle.off();
-                self.oracle.obeyed(self.tick, 0);
+                self.oracle.reset(self.tick);
             }
             Command::Zero(axis, at) => {
                 let machine = &self.background.machine;
@@ -642,12 +642,16 @@ impl<'s, H: Hand> Runner<'s, H> {
         if foreground.shown().mode != Mode::ManualData {
             return self.coverage.refusal(Refusal::WrongMode(Mode::ManualData).name(), 1);
         }
+        if !matches!(foreground.state(), State::Idle | State::Ended) {
+            return self.coverage.refusal(Refusal::CycleUnderWay.name(), 1);
+        }
         let typed = match self.background.typed(text, Self::place(foreground)) {
             Ok(typed) => typed,
             Err(failure) => return self.unloaded(&failure),
         };
         if self.request(Command::Start, foreground) {
             self.oracle.spindle_is_asked();
+            self.oracle.track = None;
             self.background.run_typed(typed);
         }
     }

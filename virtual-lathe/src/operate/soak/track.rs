@@ -8,6 +8,7 @@ use std::collections::VecDeque;
 
 use handcnc::background::compile::Compiler;
 use interp_core::block::{Block, Curve, Work};
+use interp_core::channel::State;
 use interp_core::config::Machine;
 use interp_core::curve::Walker;
 use interp_core::curve::method::Method;
@@ -28,6 +29,8 @@ pub(super) struct Track {
     end: Option<(i32, i32)>,
     /// The wheel has led back over points that may be several ones of the curve.
     ambiguous: bool,
+    /// The cycle has begun: cycle start waits until the handwheels rest.
+    begun: bool,
 }
 
 /// The nearest pulse, half to plus: the rule of the book, in integers of its own.
@@ -46,7 +49,7 @@ impl Track {
         if !known || points.len() > MOST {
             points.clear();
         }
-        Self { points, at: 0, end, ambiguous: false }
+        Self { points, at: 0, end, ambiguous: false, begun: false }
     }
 
     /// Only the end is known.
@@ -57,6 +60,16 @@ impl Track {
     fn without_points(mut self) -> Self {
         self.points.clear();
         self
+    }
+
+    /// Whether the cycle is still to begin: what is idle or ended until then is another one's.
+    pub(super) const fn waits(&mut self, state: State) -> bool {
+        self.begun |= !matches!(state, State::Idle | State::Ended);
+        !self.begun
+    }
+
+    pub(super) const fn has_begun(&self) -> bool {
+        self.begun
     }
 
     /// The program is at `place`; `both` ways are open. False where that is not on the curve.
