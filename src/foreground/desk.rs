@@ -12,7 +12,7 @@ use super::threads::{Lever, PickUp};
 use super::wheels::Wheels;
 use heapless::Deque;
 use interp_core::block::{Feed, Speed};
-use interp_core::config::{FRACTION_BITS, Machine};
+use interp_core::config::Machine;
 use interp_core::drive::Trouble;
 use interp_core::drive::gearing::Lead;
 use interp_core::units::{Axis, Lattice, Length, PulseSize};
@@ -55,12 +55,10 @@ pub(super) struct Desk {
     pub(super) following: PerAxis<i32>,
     /// What the drive could not do in the last tick.
     pub(super) trouble: Option<Trouble>,
-    /// Offsets are on their way back to zero.
-    pub(super) nulling: bool,
+    /// Offsets on their way back to zero.
+    pub(super) nulling: Nulling,
     /// Where the axes were at the end of the last tick, in the machine's own coordinates.
     pub(super) place: Lattice,
-    /// Places of each axis, in the machine's own coordinates, from which no path is braked past a soft limit.
-    pub(super) calm: PerAxis<(i32, i32)>,
     /// And at the end of the one before.
     pub(super) before: Lattice,
     /// The thread that is cut by hand.
@@ -69,6 +67,17 @@ pub(super) struct Desk {
     /// Lead of the groove that is cut by hand.
     pub(super) thread_lead: Option<Lead>,
     refused: Deque<Refusal, REFUSALS>,
+}
+
+/// What is under way with offsets.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(super) enum Nulling {
+    /// Nothing.
+    No,
+    /// They go back to zero when the hands, that move the slides yet, rest.
+    Waits,
+    /// They go back to zero.
+    Goes,
 }
 
 /// Refusals that are kept until somebody asks: a tick has few.
@@ -113,9 +122,8 @@ impl Desk {
             closed_loop: ClosedLoop::new(),
             following: PerAxis { x: 0, z: 0 },
             trouble: None,
-            nulling: false,
+            nulling: Nulling::No,
             place: NOWHERE,
-            calm: PerAxis { x: (0, 0), z: (0, 0) },
             before: NOWHERE,
             lever: Lever::Out,
             pick_up: PickUp::None,
@@ -135,34 +143,6 @@ impl Desk {
 
     pub(super) fn take_refusal(&mut self) -> Option<Refusal> {
         self.refused.pop_front()
-    }
-
-    /// Finds where no path is braked past a soft limit: further from it than the way that braking takes from the largest
-    /// speed of any path, with what is planned already and the mean of an S law.
-    pub(super) fn find_calm(&mut self) {
-        let (x, z) = (&self.machine.x, &self.machine.z);
-        let speed = u64::from(x.speed).saturating_add(u64::from(z.speed));
-        // a hand brakes with its share
-        let least = |accel: u32, by_hand: u32| if by_hand > 0 { accel.min(by_hand) } else { accel };
-        let accel = u64::from(least(x.accel, x.by_hand).min(least(z.accel, z.by_hand)).max(1));
-        let brakes = speed.saturating_mul(speed).checked_div(accel << 1).unwrap_or(u64::MAX);
-        let way = brakes.saturating_add(speed.saturating_mul(80)) >> FRACTION_BITS;
-        for axis in [Axis::X, Axis::Z] {
-            let pulse = self.pulse(axis);
-            let pulses = way.saturating_mul(u64::from(pulse.denominator())).checked_div(u64::from(pulse.numerator()));
-            let pulses = i32::try_from(pulses.unwrap_or(0)).unwrap_or(i32::MAX).saturating_add(2);
-            let (least, most) = self.settings.axes.of(axis).limits;
-            *self.calm.of_mut(axis) = (least.saturating_add(pulses), most.saturating_sub(pulses));
-        }
-    }
-
-    /// Whether no path that is there is braked past a soft limit.
-    pub(super) fn is_calm(&self, at: Lattice) -> bool {
-        let inside = |axis: Axis| {
-            let (least, most) = *self.calm.of(axis);
-            part(at, axis) > least && part(at, axis) < most
-        };
-        inside(Axis::X) && inside(Axis::Z)
     }
 
     /// How far a pulse moves an axis.
@@ -212,15 +192,20 @@ impl Desk {
 
     /// How many pulses an axis that is at `at`, in the machine's own coordinates, may go to minus and to plus.
     pub(super) fn room(&self, axis: Axis, at: i32) -> (i32, i32) {
-        let ends = self.inputs.ends.of(axis);
-        let (mut least, mut most) = (i32::MIN >> 2, i32::MAX >> 2);
+        let (mut least, mut most) = self.switches(axis);
         if *self.verified.of(axis) {
             let limits = self.settings.axes.of(axis).limits;
             // leaving a limit that was passed is free, going on is not
-            least = limits.0.saturating_sub(at).min(0);
-            most = limits.1.saturating_sub(at).max(0);
+            least = least.max(limits.0.saturating_sub(at).min(0));
+            most = most.min(limits.1.saturating_sub(at).max(0));
         }
-        (if ends.minus { 0 } else { least }, if ends.plus { 0 } else { most })
+        (least, most)
+    }
+
+    /// How many pulses its limit switches let an axis go to minus and to plus.
+    pub(super) const fn switches(&self, axis: Axis) -> (i32, i32) {
+        let ends = self.inputs.ends.of(axis);
+        (if ends.minus { 0 } else { i32::MIN >> 2 }, if ends.plus { 0 } else { i32::MAX >> 2 })
     }
 }
 

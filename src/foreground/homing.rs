@@ -89,6 +89,7 @@ impl Foreground<'_> {
             self.channel.set_offset(offset);
             *self.desk.verified.of_mut(axis) = true;
             self.desk.closed_loop.forget(axis);
+            self.set_limits();
         }
     }
 

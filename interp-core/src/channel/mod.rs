@@ -10,6 +10,7 @@ mod classic;
 mod conic;
 mod crank;
 mod cruise;
+mod fence;
 pub mod follower;
 mod geared;
 pub mod groove;
@@ -18,7 +19,6 @@ mod hands;
 mod lead;
 pub mod lookahead;
 mod margins;
-mod reach;
 mod retract;
 mod runner;
 mod single;
@@ -44,6 +44,7 @@ use crate::units::{Axis, Lattice};
 use crank::Crank;
 pub use crank::Pull;
 use cruise::Cruise;
+use fence::Fence;
 use hands::Hands;
 use lead::Lead;
 use lookahead::smooth::is_smoothed;
@@ -183,6 +184,7 @@ pub struct Channel<const N: usize> {
     /// What drives other than time keep.
     crank: Crank,
     hands: Hands,
+    fence: Fence,
     lead: Lead,
     window: Window,
     ahead: Lookahead<N>,
@@ -212,6 +214,7 @@ impl<const N: usize> Channel<N> {
             waited: 0,
             crank: Crank::of(machine),
             hands: Hands::new(machine),
+            fence: Fence::new(),
             trail: Trail::new(),
             lead: Lead::new(),
             window: Window::new(machine.smoothing),
@@ -384,16 +387,6 @@ impl<const N: usize> Channel<N> {
         self.position
     }
 
-    /// How far the path would go if it braked now, at most: nm with 12 fraction bits.
-    pub fn braking(&self) -> u64 {
-        let Current::Motion(active) = &self.current else { return 0 };
-        let (accel, window) = (u64::from(active.motion.accel.max(1)), u64::from(self.window.ticks()));
-        // two ticks are planned already; an S law runs on by its window, and what it has planned is faster by as much
-        let speed = u64::from(self.speed).saturating_add(accel.saturating_mul(window));
-        let brakes = speed.saturating_mul(speed).checked_div(accel << 1).unwrap_or(0);
-        brakes.saturating_add(speed.saturating_mul(window.saturating_add(2)))
-    }
-
     /// Whether pulses are still to come that are added to a path that stands.
     pub fn owes(&self) -> bool {
         let stands = matches!(self.state, State::Holding | State::Stopped);
@@ -432,6 +425,7 @@ impl<const N: usize> Channel<N> {
         if in_cycle || !self.hands.at_rest() || x != 0 || z != 0 {
             self.superpose(x, z);
             if in_cycle {
+                self.keep_inside();
                 output = self.run(out);
             }
         }

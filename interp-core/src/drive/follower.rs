@@ -81,15 +81,31 @@ impl Follower {
     /// ```
     pub fn follow(&mut self, distance: i64, feed: i64, bounds: Bounds, reserve: u32) -> i64 {
         let (accel, speed) = (i64::from(bounds.accel), i64::from(bounds.speed));
-        let behind = distance.saturating_sub(feed);
-        let most = approach(behind.unsigned_abs(), bounds.accel.saturating_sub(reserve).max(1));
-        let closing = if behind < 0 { most.wrapping_neg() } else { most };
+        let closing = toward(distance.saturating_sub(feed), bounds.accel.saturating_sub(reserve));
         let wish = feed.saturating_add(closing).max(speed.wrapping_neg()).min(speed);
         // limits of the acceleration come last: a speed above the largest is left as fast as may be
         let (least, most) = (self.advance.saturating_sub(accel), self.advance.saturating_add(accel));
         self.advance = wish.max(least).min(most);
         self.advance
     }
+
+    /// The same toward a place that stands, and so that from then on braking by `share` a tick stops inside `room` (at most 0, at
+    /// least 0).
+    pub fn follow_inside(&mut self, distance: i64, bounds: Bounds, room: (i64, i64), share: u32) -> i64 {
+        let before = self.advance;
+        let wish = Self { advance: before }.follow(distance, 0, bounds, 0);
+        let inside = if wish < 0 { wish.max(toward(room.0, share)) } else { wish.min(toward(room.1, share)) };
+        // one that the room has shrunk for brakes as hard as it may
+        let accel = i64::from(bounds.accel);
+        self.advance = inside.max(before.saturating_sub(accel)).min(before.saturating_add(accel));
+        self.advance
+    }
+}
+
+/// The largest advance toward a place from which braking by `accel` a tick stops there; signed.
+fn toward(distance: i64, accel: u32) -> i64 {
+    let most = approach(distance.unsigned_abs(), accel.max(1));
+    if distance < 0 { most.wrapping_neg() } else { most }
 }
 
 #[cfg(test)]

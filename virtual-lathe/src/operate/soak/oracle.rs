@@ -59,8 +59,6 @@ pub(super) struct Tick<'t> {
     pub(super) pressed: bool,
     /// No wheel's axis moves, nor has to.
     pub(super) rests: bool,
-    /// Pulses that X is out of a thread.
-    pub(super) retracted: i32,
 }
 
 /// What is remembered of an axis.
@@ -229,8 +227,12 @@ impl Oracle {
     }
 
     /// The place of both axes was told to be right, or motors went on or off.
-    pub(super) fn confirmed(&mut self) {
-        self.axes.iter_mut().for_each(|books| books.allowed = None);
+    pub(super) fn confirmed(&mut self, shown: &Shown) {
+        for books in &mut self.axes {
+            books.allowed = None;
+            // no home was found, whatever the mode
+            books.verified = *shown.verified.of(books.axis);
+        }
     }
 
     /// A request was obeyed that may move a slide, or forgets what a wheel asked for.
@@ -434,9 +436,7 @@ impl Oracle {
             let what = if stands { "at rest" } else { "moving" };
             return Err(("count", format!("{what}, {axis:?} shows {off} pulses more than the pins have counted")));
         }
-        // what X is pulled out of a thread knows no limit yet: that is for those who build it
-        let retracted = if axis == Axis::X { tick.retracted } else { 0 };
-        let own = plain + books.own - retracted;
+        let own = plain + books.own;
         let figures = self.operation.axes.of(axis);
         if verified {
             let (least, most) = figures.limits;
