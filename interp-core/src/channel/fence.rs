@@ -258,7 +258,7 @@ impl<const N: usize> Channel<N> {
         if self.crank.in_thread {
             return self.thread_reach();
         }
-        let smooth = self.window.ticks() > 0 && self.follows();
+        let smooth = self.window.ticks() > 0 && !self.crank.turns && self.follows();
         let (speed, owed) = if smooth { (self.lead.speed(), self.window.owed()) } else { (self.speed, 0) };
         let mut braking = Braking { way: owed, squared: square(speed), gains: None, begins: false };
         if goes_on {
