@@ -199,7 +199,9 @@ impl Oracle {
             books.clicks = Clicks::new();
             books.verified = *shown.verified.of(books.axis);
             // what a compensation had added counts as right from now on, and what was owed is not made any more
-            books.shift = part(shown.position, books.axis) - part(at, books.axis);
+            let shift = part(shown.position, books.axis) - part(at, books.axis);
+            books.own += shift - books.shift;
+            books.shift = shift;
         }
     }
 
