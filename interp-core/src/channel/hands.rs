@@ -41,8 +41,8 @@ struct AxisHand {
     folds: bool,
     /// How far the offset may go.
     bounds: (i32, i32),
-    /// Room in the tick that comes, pulses, where it is known already.
-    room: Option<(i32, i32)>,
+    /// Room in the tick that comes, where it is known already.
+    room: Option<Room>,
     /// The program's position at the last tick.
     at: i32,
 }
@@ -82,7 +82,7 @@ impl AxisHand {
 
     /// Moves for a tick; the pulses.
     fn tick(&mut self, bounds: Bounds) -> i32 {
-        let room = self.room.take().map_or(ENDLESS, |room| self.length(room));
+        let room = self.room.take().unwrap_or(ENDLESS);
         self.hand.tick(bounds, room, self.share(), self.pulse)
     }
 
@@ -236,7 +236,7 @@ impl<const N: usize> Channel<N> {
         for axis in [Axis::X, Axis::Z] {
             let hand = self.hands.of(axis);
             if hand.room.is_none() && !hand.hand.is_at_rest() {
-                self.find_room(axis, UNBOUND);
+                let _ = self.find_room(axis, UNBOUND);
             }
         }
         // the retract is the program's, too
@@ -264,8 +264,8 @@ impl<const N: usize> Channel<N> {
         (self.hands.x.bounds, self.hands.z.bounds) = (x, z);
     }
 
-    /// Finds the room of an axis's hand in the tick that comes, inside `ends`: pulses, at most 0 and at least 0.
-    fn find_room(&mut self, axis: Axis, ends: (i32, i32)) {
+    /// Finds the room of an axis's hand in the tick that comes, inside `ends`: pulses, at most 0 and at least 0; and as lengths.
+    fn find_room(&mut self, axis: Axis, ends: (i32, i32)) -> ((i32, i32), Room) {
         let offset = self.hands.offset;
         let (mut least, mut most) = ends;
         let mut bound = |(low, high): (i32, i32)| (least, most) = (least.max(low.min(0)), most.min(high.max(0)));
@@ -278,7 +278,9 @@ impl<const N: usize> Channel<N> {
         if !hand.folds {
             bound((hand.bounds.0.saturating_sub(off), hand.bounds.1.saturating_sub(off)));
         }
-        hand.room = Some((least, most));
+        let room = hand.length((least, most));
+        hand.room = Some(room);
+        ((least, most), room)
     }
 
     /// Takes the counts of a handwheel, 4 a detent, each detent worth `click`. `ends` is how many pulses the axis may move
@@ -294,12 +296,10 @@ impl<const N: usize> Channel<N> {
         if counts == 0 && hand.hand.is_at_rest() {
             return (0, false);
         }
-        self.find_room(axis, ends);
+        let ((least, most), room) = self.find_room(axis, ends);
         let hand = self.hands.of(axis);
         hand.pace = Speed::MAX;
         let bounds = hand.bounds(moves.then(|| position.wrapping_sub(hand.at)));
-        let (least, most) = hand.room.unwrap_or(ends);
-        let room = hand.length((least, most));
         let dropped = hand.hand.turn(click, counts, bounds, room);
         (dropped, dropped < 0 && least == 0 || dropped > 0 && most == 0)
     }
@@ -315,10 +315,8 @@ impl<const N: usize> Channel<N> {
     /// Drops what an axis's hand still has to do beyond `ends` (pulses, at most 0 and at least 0), fence and bounds. Whether it was
     /// too much.
     pub fn limit_hand(&mut self, axis: Axis, ends: (i32, i32)) -> bool {
-        self.find_room(axis, ends);
-        let hand = self.hands.of(axis);
-        let room = hand.length(hand.room.unwrap_or(ends));
-        hand.hand.limit(room)
+        let (_, room) = self.find_room(axis, ends);
+        self.hands.of(axis).hand.limit(room)
     }
 
     /// Stops what a hand does, as soon as its acceleration allows.
