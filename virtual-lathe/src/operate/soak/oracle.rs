@@ -439,14 +439,16 @@ impl Oracle {
             return Err(("count", format!("{what}, {axis:?} shows {off} pulses more than the pins have counted")));
         }
         let own = plain + books.own;
+        // of what a compensation has given, a pulse that would turn the axis round may still be owed
+        let owed = i32::from(!stands && *tick.compensation.of(axis) != 0);
         let figures = self.operation.axes.of(axis);
         if verified {
             let (least, most) = figures.limits;
             let allowed = books.allowed.get_or_insert((least.min(own), most.max(own)));
-            if own < allowed.0 || own > allowed.1 {
+            if own < allowed.0 - owed || own > allowed.1 + owed {
                 return Err(("soft-limit", format!("{axis:?} is at {own} of {least} to {most} pulses")));
             }
-            *allowed = (least.min(own), most.max(own));
+            *allowed = (least.min(own).max(allowed.0), most.max(own).min(allowed.1));
             if (own == least || own == most) && books.still == 0 {
                 coverage.happened("soft limit reached");
             }
