@@ -50,7 +50,8 @@ impl Foreground<'_> {
     fn turn_wheels(&mut self) {
         let counts = self.desk.inputs.wheels;
         self.desk.inputs.wheels = PerAxis { x: 0, z: 0 };
-        let slides = matches!(self.desk.mode, Mode::Handwheel)
+        // what homing has begun to move is a slide until it stands
+        let slides = matches!(self.desk.mode, Mode::Handwheel | Mode::Homing)
             || matches!(self.desk.mode, Mode::Power) && !matches!(self.desk.power.phase, Phase::Contour);
         if matches!(self.desk.nulling, Nulling::Waits) && self.channel.hands_rest() {
             self.null_offset();
