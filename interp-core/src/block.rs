@@ -16,7 +16,7 @@ pub use chain::Chain;
 pub use pieces::Pieces;
 
 use crate::config::{FRACTION_BITS, Machine, speed_of};
-use crate::curve::arc::Arc;
+use crate::curve::arc::{Arc, NO_EXTREMES};
 #[cfg(feature = "methods")]
 use crate::curve::conic_piece::ConicPiece;
 use crate::curve::line::Line;
@@ -114,13 +114,18 @@ impl Curve {
 
     /// The least and the greatest coordinates, X then Z, pulses from the start; a pulse more where an arc passes an extreme.
     pub fn extent(&self) -> ((i32, i32), (i32, i32)) {
-        let (x, z) = self.end();
-        let ends = ((x.min(0), z.min(0)), (x.max(0), z.max(0)));
+        let ((x, z), (least, most)) = (self.end(), self.extremes(0, u64::MAX));
+        ((least.0.min(x).min(0), least.1.min(z).min(0)), (most.0.max(x).max(0), most.1.max(z).max(0)))
+    }
+
+    /// The extremes that it passes between two lengths: the least and the greatest coordinates, X then Z, pulses from the start,
+    /// and a pulse more. Where there is none the least is the largest number, and the greatest the smallest.
+    pub(crate) fn extremes(&self, from: u64, until: u64) -> ((i32, i32), (i32, i32)) {
         match self {
-            Self::Arc(arc) => arc.extent(),
-            Self::Line(..) => ends,
+            Self::Arc(arc) => arc.extremes(from, until),
+            Self::Line(..) => NO_EXTREMES,
             #[cfg(feature = "methods")]
-            Self::ClassicLine(..) | Self::Conic(_) => ends,
+            Self::ClassicLine(..) | Self::Conic(_) => NO_EXTREMES,
         }
     }
 }

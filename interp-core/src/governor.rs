@@ -139,6 +139,12 @@ impl Motion {
         }
     }
 
+    /// An acceleration that it brakes with at least, from any speed to standstill: on an arc turning takes all of it at first and
+    /// none at the end, which leaves 2 / pi of it over the way.
+    pub(crate) fn brakes(&self) -> u64 {
+        if self.bend().is_some() { u64::from(self.accel >> 1) } else { self.straight().into() }
+    }
+
     /// The largest squared speed `distance` before the end from which `exit` (squared) can be met.
     pub fn reachable(&self, distance: u64, exit: u64) -> u64 {
         match self.bend() {

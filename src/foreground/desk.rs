@@ -12,7 +12,7 @@ use super::threads::{Lever, PickUp};
 use super::wheels::Wheels;
 use heapless::Deque;
 use interp_core::block::{Feed, Speed};
-use interp_core::config::{FRACTION_BITS, Machine};
+use interp_core::config::Machine;
 use interp_core::drive::Trouble;
 use interp_core::drive::gearing::Lead;
 use interp_core::units::{Axis, Lattice, Length, PulseSize};
@@ -55,8 +55,8 @@ pub(super) struct Desk {
     pub(super) following: PerAxis<i32>,
     /// What the drive could not do in the last tick.
     pub(super) trouble: Option<Trouble>,
-    /// Offsets are on their way back to zero.
-    pub(super) nulling: bool,
+    /// Offsets on their way back to zero.
+    pub(super) nulling: Nulling,
     /// The thread that is cut by hand.
     pub(super) lever: Lever,
     pub(super) pick_up: PickUp,
@@ -65,29 +65,31 @@ pub(super) struct Desk {
     refused: Deque<Refusal, REFUSALS>,
 }
 
-/// What each tick looks at when the channel has made it, all of it in the machine's own coordinates.
+/// What each tick looks at when the channel has made it, in the machine's own coordinates.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Seen {
     /// Where the axes were at the end of the last tick.
     pub(super) place: Lattice,
     /// And at the end of the one before.
     pub(super) before: Lattice,
-    /// Places of each axis from which no path is braked past a soft limit.
-    pub(super) calm: PerAxis<(i32, i32)>,
 }
 
 impl Seen {
     pub(super) const NOWHERE: Self = {
         let at = Lattice { x: 0, z: 0 };
-        Self { place: at, before: at, calm: PerAxis { x: (0, 0), z: (0, 0) } }
+        Self { place: at, before: at }
     };
+}
 
-    /// Whether no path that is there is braked past a soft limit.
-    #[inline]
-    pub(super) const fn is_calm(&self, at: Lattice) -> bool {
-        let PerAxis { x, z } = &self.calm;
-        at.x > x.0 && at.x < x.1 && at.z > z.0 && at.z < z.1
-    }
+/// What is under way with offsets.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(super) enum Nulling {
+    /// Nothing.
+    No,
+    /// They go back to zero when the hands, that move the slides yet, rest.
+    Waits,
+    /// They go back to zero.
+    Goes,
 }
 
 /// Refusals that are kept until somebody asks: a tick has few.
@@ -132,7 +134,7 @@ impl Desk {
             closed_loop: ClosedLoop::new(),
             following: PerAxis { x: 0, z: 0 },
             trouble: None,
-            nulling: false,
+            nulling: Nulling::No,
             lever: Lever::Out,
             pick_up: PickUp::None,
             thread_lead: None,
@@ -153,26 +155,6 @@ impl Desk {
         self.refused.pop_front()
     }
 
-    /// Finds where no path is braked past a soft limit: further from it than the way that braking takes from the largest
-    /// speed of any path, with what is planned already and the mean of an S law.
-    pub(super) fn calm(&self) -> PerAxis<(i32, i32)> {
-        let (x, z) = (&self.machine.x, &self.machine.z);
-        let speed = u64::from(x.speed).saturating_add(u64::from(z.speed));
-        // a hand brakes with its share
-        let least = |accel: u32, by_hand: u32| if by_hand > 0 { accel.min(by_hand) } else { accel };
-        let accel = u64::from(least(x.accel, x.by_hand).min(least(z.accel, z.by_hand)).max(1));
-        let brakes = speed.saturating_mul(speed).checked_div(accel << 1).unwrap_or(u64::MAX);
-        let way = brakes.saturating_add(speed.saturating_mul(80)) >> FRACTION_BITS;
-        let of = |axis: Axis| {
-            let pulse = self.pulse(axis);
-            let pulses = way.saturating_mul(u64::from(pulse.denominator())).checked_div(u64::from(pulse.numerator()));
-            let pulses = i32::try_from(pulses.unwrap_or(0)).unwrap_or(i32::MAX).saturating_add(2);
-            let (least, most) = self.settings.axes.of(axis).limits;
-            (least.saturating_add(pulses), most.saturating_sub(pulses))
-        };
-        PerAxis { x: of(Axis::X), z: of(Axis::Z) }
-    }
-
     /// Whether the operator's side has something to do in each tick, but for hands that move.
     pub(super) fn acts(&self) -> bool {
         let moves_by_itself =
@@ -180,7 +162,7 @@ impl Desk {
         moves_by_itself
             || self.own_path
             || self.starting
-            || self.nulling
+            || !matches!(self.nulling, Nulling::No)
             || self.inputs != Inputs::NONE
             || !self.wheels.rest()
     }
@@ -232,15 +214,20 @@ impl Desk {
 
     /// How many pulses an axis that is at `at`, in the machine's own coordinates, may go to minus and to plus.
     pub(super) fn room(&self, axis: Axis, at: i32) -> (i32, i32) {
-        let ends = self.inputs.ends.of(axis);
-        let (mut least, mut most) = (i32::MIN >> 2, i32::MAX >> 2);
+        let (mut least, mut most) = self.switches(axis);
         if *self.verified.of(axis) {
             let limits = self.settings.axes.of(axis).limits;
             // leaving a limit that was passed is free, going on is not
-            least = limits.0.saturating_sub(at).min(0);
-            most = limits.1.saturating_sub(at).max(0);
+            least = least.max(limits.0.saturating_sub(at).min(0));
+            most = most.min(limits.1.saturating_sub(at).max(0));
         }
-        (if ends.minus { 0 } else { least }, if ends.plus { 0 } else { most })
+        (least, most)
+    }
+
+    /// How many pulses its limit switches let an axis go to minus and to plus.
+    pub(super) const fn switches(&self, axis: Axis) -> (i32, i32) {
+        let ends = self.inputs.ends.of(axis);
+        (if ends.minus { 0 } else { i32::MIN >> 2 }, if ends.plus { 0 } else { i32::MAX >> 2 })
     }
 }
 

@@ -90,6 +90,7 @@ impl Foreground<'_> {
             self.channel.stand_at(axis, place);
             *self.desk.verified.of_mut(axis) = true;
             self.desk.closed_loop.forget(axis);
+            self.set_limits();
         }
     }
 

@@ -38,13 +38,18 @@ impl Foreground<'_> {
     /// What is to be kept now.
     pub fn kept(&self) -> Kept {
         let desk = &self.desk;
+        // under machine lock the axes stand where they stood before it
+        let (programmed, offset, kept, wear, datum) = match &desk.locked {
+            Some(locked) => (locked.position, locked.offset, locked.kept, locked.wear, locked.datum),
+            None => (self.channel.position(), self.channel.offset(), desk.kept, desk.wear, desk.datum),
+        };
         Kept {
             pulse: PerAxis { x: desk.machine.x.pulse, z: desk.machine.z.pulse },
-            programmed: self.channel.position(),
-            offset: self.channel.offset(),
-            kept: desk.kept,
-            wear: desk.wear,
-            datum: desk.datum,
+            programmed,
+            offset,
+            kept,
+            wear,
+            datum,
             line: if self.situation().in_cycle() { self.channel.line() } else { desk.interrupted },
         }
     }
@@ -60,6 +65,7 @@ impl Foreground<'_> {
         for axis in AXES {
             self.channel.stand_at(axis, part(self.place(), axis));
         }
+        self.set_limits();
     }
 }
 

@@ -1,6 +1,6 @@
 //! A tick of the operator's side: readings become motion, and what the channel does is overseen.
 
-use super::desk::part;
+use super::desk::{Nulling, part};
 use super::inputs::{AXES, Ends, Inputs, Joystick, PerAxis};
 use super::mode::Mode;
 use super::power::Phase;
@@ -11,15 +11,15 @@ use interp_core::channel::{Report, State};
 use interp_core::drive::{self, Drive};
 use interp_core::units::{Axis, Lattice};
 
+/// Limits of an axis that nobody knows the place of.
+const NOWHERE: (i32, i32) = (i32::MIN >> 1, i32::MAX >> 1);
+
 impl Foreground<'_> {
     /// Before the channel's tick.
     #[inline]
     pub(super) fn operate(&mut self) {
         if self.attended {
             self.attend();
-        }
-        if matches!(self.channel.state(), State::Running) && self.channel.speed() == 0 {
-            self.watch_start();
         }
     }
 
@@ -40,14 +40,34 @@ impl Foreground<'_> {
         self.attended = self.desk.acts() || !self.channel.hands_rest();
     }
 
+    /// Tells the channel what soft limits and bounds there are: whenever one of them, or where the axes count from, has changed.
+    pub(super) fn set_limits(&mut self) {
+        let desk = &self.desk;
+        // soft limits are in the machine's own coordinates, the channel's places in the program's
+        let beside = desk.physical(desk.datum, Lattice::default());
+        let inside = |axis: Axis| {
+            let (least, most) = desk.settings.axes.of(axis).limits;
+            let by = part(beside, axis);
+            if *desk.verified.of(axis) { (least.saturating_sub(by), most.saturating_sub(by)) } else { NOWHERE }
+        };
+        let (x, z) = (inside(Axis::X), inside(Axis::Z));
+        let axes = &desk.settings.axes;
+        self.channel.set_fence(Lattice { x: x.0, z: z.0 }, Lattice { x: x.1, z: z.1 });
+        self.channel.set_bounds(axes.x.bounds, axes.z.bounds);
+    }
+
     /// The handwheels of X and Z.
     fn turn_wheels(&mut self) {
         let counts = self.desk.inputs.wheels;
         self.desk.inputs.wheels = PerAxis { x: 0, z: 0 };
-        let slides = matches!(self.desk.mode, Mode::Handwheel)
+        // what homing has begun to move is a slide until it stands
+        let slides = matches!(self.desk.mode, Mode::Handwheel | Mode::Homing)
             || matches!(self.desk.mode, Mode::Power) && !matches!(self.desk.power.phase, Phase::Contour);
+        if matches!(self.desk.nulling, Nulling::Waits) && self.channel.hands_rest() {
+            self.null_offset();
+        }
         // what is nulled is the offset, in every mode
-        let folds = slides && !self.desk.nulling;
+        let folds = slides && !matches!(self.desk.nulling, Nulling::Goes);
         self.channel.fold_hands(folds, folds);
         if counts == (PerAxis { x: 0, z: 0 }) && self.channel.hands_rest() {
             if self.desk.wheels.rest() {
@@ -59,7 +79,6 @@ impl Foreground<'_> {
             }
             return;
         }
-        let place = self.place();
         for axis in AXES {
             let counts = *counts.of(axis);
             let click = self.desk.wheels.click(axis, counts);
@@ -73,31 +92,29 @@ impl Foreground<'_> {
                 }
                 continue;
             }
-            let (mut least, mut most) = self.desk.room(axis, part(place, axis));
-            if self.channel.speed() > 0 {
-                // the path and the hand may have to brake for one and the same limit
-                let braking = self.braking_pulses(axis);
-                (least, most) = (least.saturating_add(braking).min(0), most.saturating_sub(braking).max(0));
-            }
+            let ends = self.desk.switches(axis);
             // what moves by itself is not a wheel's: a turn takes it over
-            if counts == 0 && self.desk.nulling {
-                if self.channel.limit_hand(axis, (least, most)) {
+            if counts == 0 && !matches!(self.desk.nulling, Nulling::No) {
+                if self.channel.limit_hand(axis, ends) {
                     self.desk.refuse(Refusal::Limit(axis, part(self.channel.offset(), axis) < 0));
                 }
                 continue;
             }
-            self.desk.nulling = false;
-            if !folds {
-                let (bounds, offset) = (self.desk.settings.axes.of(axis).bounds, part(self.channel.offset(), axis));
-                least = least.max(bounds.0.saturating_sub(offset).min(0));
-                most = most.min(bounds.1.saturating_sub(offset).max(0));
-            }
-            let dropped = self.channel.turn_hand(axis, click, counts, (least, most));
+            self.desk.nulling = Nulling::No;
+            let (dropped, at_end) = self.channel.turn_hand(axis, click, counts, ends);
             self.desk.wheels.drop(axis, dropped);
-            let (at_minus, at_plus) = (least == 0 && dropped < 0, most == 0 && dropped > 0);
-            if at_minus || at_plus {
-                self.desk.refuse(Refusal::Limit(axis, at_plus));
+            if at_end {
+                self.desk.refuse(Refusal::Limit(axis, dropped > 0));
             }
+        }
+    }
+
+    /// Sends the hands back to where no offset is.
+    pub(super) fn null_offset(&mut self) {
+        let (offset, safe) = (self.channel.offset(), self.desk.settings.safe);
+        self.desk.nulling = Nulling::Goes;
+        for axis in AXES {
+            self.channel.go_hand(axis, part(offset, axis).wrapping_neg(), safe);
         }
     }
 
@@ -211,11 +228,11 @@ impl Foreground<'_> {
         if self.attended || report.driven.dropped != 0 || report.driven.back_end.is_some() {
             self.oversee_acts(report, place);
         }
+        if let Some((axis, plus)) = self.channel.met_fence() {
+            self.desk.refuse(Refusal::Limit(axis, plus));
+        }
         let before = self.seen.place;
         if place != before {
-            if !self.seen.is_calm(place) {
-                self.watch_limits(place);
-            }
             let came = &mut self.desk.power.came;
             if place.x != before.x {
                 came.x = Some(place.x > before.x);
@@ -235,8 +252,8 @@ impl Foreground<'_> {
         if let Some(end) = report.driven.back_end {
             self.desk.refuse(Refusal::WayBackEnds(end));
         }
-        if self.desk.nulling && self.channel.hands_rest() {
-            self.desk.nulling = false;
+        if matches!(self.desk.nulling, Nulling::Goes) && self.channel.hands_rest() {
+            self.desk.nulling = Nulling::No;
         }
         if self.desk.own_path && matches!(report.state, State::Idle | State::Ended) {
             self.desk.own_path = false;
@@ -264,92 +281,6 @@ impl Foreground<'_> {
                 self.raise(Alarm::limit_switch(axis));
             }
         }
-    }
-
-    /// Holds a path that would lead an axis past its soft limit.
-    #[cold]
-    fn watch_limits(&mut self, at: Lattice) {
-        if !matches!(self.channel.state(), State::Running) || self.channel.speed() == 0 {
-            return;
-        }
-        for axis in AXES {
-            let moved = part(at, axis).wrapping_sub(part(self.seen.place, axis));
-            let (near, hand) = (self.braking_pulses(axis), self.hand_pulses(axis));
-            let minus = if moved <= 0 { near.saturating_sub(hand.min(0)) } else { -1 };
-            let plus = if moved >= 0 { near.saturating_add(hand.max(0)) } else { -1 };
-            if self.stop_at_limit(axis, at, (minus, plus), hand) {
-                return;
-            }
-        }
-    }
-
-    /// Holds a path that stands and would begin past a soft limit, before it moves.
-    fn watch_start(&mut self) {
-        let at = self.place();
-        if !matches!(self.channel.drive(), Drive::Time) || self.seen.is_calm(at) {
-            return;
-        }
-        for axis in AXES {
-            let near = self.starting_pulses(axis);
-            if self.stop_at_limit(axis, at, (near, near), 0) {
-                return;
-            }
-        }
-    }
-
-    /// Holds the path where an axis is within so many pulses of its minus or plus limit, and the path leads farther and past it,
-    /// with what the axis's hand goes while it brakes.
-    fn stop_at_limit(&mut self, axis: Axis, at: Lattice, (minus, plus): (i32, i32), hand: i32) -> bool {
-        let ((least, most), here) = (self.desk.settings.axes.of(axis).limits, part(at, axis));
-        let near_minus = here.saturating_sub(least) <= minus && minus >= 0;
-        let near_plus = most.saturating_sub(here) <= plus && plus >= 0;
-        if !self.desk.verified.of(axis) || !near_minus && !near_plus {
-            return false;
-        }
-        let shift = here.wrapping_sub(part(self.channel.position(), axis));
-        let (mut low, mut high) = (here, here);
-        self.channel.extents(|least, most| {
-            low = low.min(part(least, axis).saturating_add(shift));
-            high = high.max(part(most, axis).saturating_add(shift));
-        });
-        let (low, high) = (low.saturating_add(hand.min(0)), high.saturating_add(hand.max(0)));
-        let to_plus = near_plus && high > most.max(here);
-        let passes = to_plus || near_minus && low < least.min(here);
-        if passes {
-            let _ = self.channel.hold();
-            self.desk.refuse(Refusal::Limit(axis, to_plus));
-        }
-        passes
-    }
-
-    /// Pulses that an axis goes at most if a path begins and is held after its first tick; an S law has begun more by then.
-    fn starting_pulses(&self, axis: Axis) -> i32 {
-        let machine = &self.desk.machine;
-        let limits = if matches!(axis, Axis::X) { &machine.x } else { &machine.z };
-        let (accel, window) = (u64::from(limits.accel.max(1)), u64::from(machine.smoothing.ticks()));
-        let speed = accel.saturating_mul(window.saturating_add(1)).saturating_add(limits.jump.into());
-        let brakes = speed.saturating_mul(speed).checked_div(accel << 1).unwrap_or(0);
-        let way = brakes.saturating_add(speed.saturating_mul(window.saturating_add(2)));
-        self.pulses_of(axis, way).saturating_add(2)
-    }
-
-    /// Whole pulses of so many nm with 12 fraction bits.
-    fn pulses_of(&self, axis: Axis, length: u64) -> i32 {
-        let (pulse, nm) = (self.desk.pulse(axis), length >> interp_core::config::FRACTION_BITS);
-        let pulses = nm.saturating_mul(u64::from(pulse.denominator())).checked_div(u64::from(pulse.numerator()));
-        i32::try_from(pulses.unwrap_or(0)).unwrap_or(i32::MAX >> 2)
-    }
-
-    /// Pulses that an axis's hand goes while it brakes, signed.
-    fn hand_pulses(&self, axis: Axis) -> i32 {
-        let braking = self.channel.hand_braking(axis);
-        let pulses = self.pulses_of(axis, braking.unsigned_abs());
-        if braking < 0 { pulses.wrapping_neg() } else { pulses }
-    }
-
-    /// Pulses that an axis goes at most while the path brakes.
-    fn braking_pulses(&self, axis: Axis) -> i32 {
-        self.pulses_of(axis, self.channel.braking()).saturating_add(2)
     }
 
     /// Where a joystick that is latched leads, if anywhere.

@@ -1,7 +1,7 @@
 //! Carries out requests that the [mode](super::mode) allows.
 
 use super::command::{Command, Stop};
-use super::desk::{Locked, part, part_mut};
+use super::desk::{Locked, Nulling, part, part_mut};
 use super::homing;
 use super::inputs::{AXES, Joystick, PerAxis};
 use super::mode::{Mode, Situation};
@@ -25,6 +25,7 @@ impl Foreground<'_> {
             || self.channel.owes()
             || desk.homing.axis().is_some()
             || desk.starting
+            || matches!(desk.nulling, Nulling::Waits)
             // a path that is driven by hand may stand as long as it likes
             || (runs && drives);
         Situation {
@@ -48,6 +49,12 @@ impl Foreground<'_> {
 
     /// Does what was asked for and is allowed.
     pub(super) fn carry_out(&mut self, command: Command) -> Result<(), Refusal> {
+        let done = self.carry_out_one(command);
+        self.set_limits();
+        done
+    }
+
+    fn carry_out_one(&mut self, command: Command) -> Result<(), Refusal> {
         match command {
             Command::Mode(mode) => self.change_mode(mode),
             Command::Start => {
@@ -73,13 +80,9 @@ impl Foreground<'_> {
                 self.drop_path();
                 if self.channel.configure(&machine) {
                     self.desk.machine = machine;
-                    self.seen.calm = self.desk.calm();
                 }
             }
-            Command::Settle(settings) => {
-                self.desk.settings = settings;
-                self.seen.calm = self.desk.calm();
-            }
+            Command::Settle(settings) => self.desk.settings = settings,
             Command::Scale(click) => self.desk.wheels.set_scale(click),
             Command::FeedRate(feed) => self.desk.power.feed = feed,
             Command::StopAt(axis, stop) => self.set_stop(axis, stop)?,
@@ -110,10 +113,12 @@ impl Foreground<'_> {
                 add(&mut self.desk.wear, offset);
             }
             Command::NullOffset => {
-                let (offset, safe) = (self.channel.offset(), self.desk.settings.safe);
-                self.desk.nulling = true;
-                for axis in AXES {
-                    self.channel.go_hand(axis, part(offset, axis).wrapping_neg(), safe);
+                if self.channel.hands_fold() && !self.channel.hands_rest() {
+                    // what a hand moves now is a slide; what it goes on with would be an offset
+                    AXES.into_iter().for_each(|axis| self.channel.stop_hand(axis));
+                    self.desk.nulling = Nulling::Waits;
+                } else {
+                    self.null_offset();
                 }
             }
             Command::Spindle(speed) => self.desk.spindle = speed,
@@ -187,6 +192,9 @@ impl Foreground<'_> {
         self.desk.power.cancel(self.desk.inputs.joystick);
         self.desk.homing = homing::Phase::Rest;
         self.desk.starting = false;
+        if matches!(self.desk.nulling, Nulling::Waits) {
+            self.desk.nulling = Nulling::No;
+        }
     }
 
     /// Machine lock: while it is on only the display moves; then it goes back to where the axes are.
@@ -274,6 +282,7 @@ impl Foreground<'_> {
         for (axis, lost) in AXES.into_iter().zip(lost) {
             *self.desk.verified.of_mut(axis) &= !lost;
         }
+        self.set_limits();
         if self.situation().in_cycle() {
             self.desk.interrupted = self.channel.line();
         }

@@ -17,7 +17,7 @@
 use super::Memory;
 use super::{Channel, Current, State};
 use crate::block::{Feed, Motion};
-use crate::drive::follower::{Bounds, approach};
+use crate::drive::follower::{Bounds, approach, is_far};
 use crate::drive::gearing::Gearing;
 use crate::drive::spindle::{COUNT, Foretold};
 use crate::drive::{Drive, Trouble};
@@ -225,16 +225,6 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     }
 }
 
-/// Whether an end is so far that [`approach`] certainly allows an advance, as it does from
-/// `sqrt(2 a room) - a / 2 - 1 >= sqrt(a room)` on, which holds where `room >= 2 a + 6`, if the advance is below that. One product
-/// tells, in place of roots and divisions in every tick.
-const fn is_far(room: u64, advance: u64, accel: u32) -> bool {
-    let accel = if accel == 0 { 1 } else { accel as u64 };
-    advance >> 31 == 0
-        && room >= accel.saturating_mul(2).saturating_add(6)
-        && advance.wrapping_mul(advance) <= accel.saturating_mul(room)
-}
-
 /// What the spindle asks for beyond the limits.
 fn trouble(feed: i64, gain: i64, bounds: Bounds) -> Option<Trouble> {
     let (needed, gain) = (to_u32(feed.unsigned_abs()), to_u32(gain.unsigned_abs()));
@@ -246,31 +236,5 @@ fn trouble(feed: i64, gain: i64, bounds: Bounds) -> Option<Trouble> {
         Some(Trouble::TooHard { needed: gain, limit: bounds.accel })
     } else {
         None
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        /// What is passed unasked is what the question would have allowed.
-        #[test]
-        fn an_end_that_is_far_allows_the_advance(
-            accel in prop_oneof![0_u32..20, 1_u32..u32::MAX], part in 0_u64..1 << 20, advance in 0_u64..1 << 31, bits in 0_u32..31,
-        ) {
-            let advance = advance >> bits;
-            // around where the answer changes
-            let edge = advance.saturating_mul(advance) / u64::from(accel.max(1)) + 2 * u64::from(accel);
-            for room in [edge, edge + part, edge.saturating_sub(part), edge / 2 + part] {
-                prop_assert!(!is_far(room, advance, accel) || approach(room, accel) >= advance.cast_signed(), "{room}");
-            }
-        }
-
-        #[test]
-        fn an_end_far_enough_is_far(accel in 1_u32..1 << 24, advance in 0_u64..1 << 31) {
-            prop_assert!(is_far(advance * advance / u64::from(accel) + 2 * u64::from(accel) + 7, advance, accel));
-        }
     }
 }

@@ -131,8 +131,24 @@ impl Hand {
         place.wrapping_sub(self.place)
     }
 
-    /// Moves for a tick within `bounds`; the pulses that it moved by.
-    pub fn tick(&mut self, bounds: Bounds, pulse: PulseSize) -> i32 {
+    /// The pulses that it makes until it stands if it brakes by so much a tick.
+    pub fn pulses_to_stand(&self, accel: u32, pulse: PulseSize) -> i32 {
+        let advance = self.follower.advance();
+        if advance == 0 {
+            return 0;
+        }
+        // (v - a) + (v - 2 a) + ..
+        let (speed, accel) = (advance.unsigned_abs(), u64::from(accel.max(1)));
+        let ticks = speed.checked_div(accel).unwrap_or(0);
+        let less = accel.wrapping_mul(ticks.wrapping_mul(ticks.saturating_add(1)) >> 1);
+        let way = speed.saturating_mul(ticks).saturating_sub(less).cast_signed();
+        let braking = if advance < 0 { way.wrapping_neg() } else { way };
+        pulses(self.place.wrapping_add(braking), pulse).wrapping_sub(self.made)
+    }
+
+    /// Moves for a tick within `bounds`, and so that braking by `share` a tick it stops inside the room; the pulses that it moved
+    /// by.
+    pub fn tick(&mut self, bounds: Bounds, room: Room, share: u32, pulse: PulseSize) -> i32 {
         let before = self.follower.advance();
         if self.stopping {
             let accel = i64::from(bounds.accel);
@@ -145,23 +161,23 @@ impl Hand {
             if distance == 0 && before == 0 {
                 return 0;
             }
-            self.wheel.went(self.follower.follow(distance, 0, bounds, 0));
+            self.wheel.went(self.follower.follow_inside(distance, bounds, room, share));
         }
         self.place = self.place.wrapping_add(self.follower.advance());
-        let pulses = self.pulses(pulse);
+        let pulses = pulses(self.place, pulse);
         let moved = pulses.wrapping_sub(self.made);
         self.made = pulses;
         moved
     }
+}
 
-    /// The whole pulse nearest to the place, half up.
-    fn pulses(&self, pulse: PulseSize) -> i32 {
-        let numerator = i64::from(pulse.numerator());
-        let doubled = self.place.wrapping_mul(i64::from(pulse.denominator()));
-        let half = numerator.wrapping_shl(FRACTION_BITS.wrapping_sub(1));
-        let nearest = doubled.wrapping_add(half).checked_div_euclid(numerator.wrapping_shl(FRACTION_BITS));
-        to_i32(nearest.unwrap_or(0))
-    }
+/// The whole pulse nearest to a place, half up.
+fn pulses(place: i64, pulse: PulseSize) -> i32 {
+    let numerator = i64::from(pulse.numerator());
+    let doubled = place.wrapping_mul(i64::from(pulse.denominator()));
+    let half = numerator.wrapping_shl(FRACTION_BITS.wrapping_sub(1));
+    let nearest = doubled.wrapping_add(half).checked_div_euclid(numerator.wrapping_shl(FRACTION_BITS));
+    to_i32(nearest.unwrap_or(0))
 }
 
 impl Default for Hand {
@@ -186,7 +202,32 @@ mod tests {
 
     const BOUNDS: Bounds = Bounds { speed: 83_333 << 12, accel: 500 << 12 };
 
+    /// What a hand has beside a program.
+    const SHARE: u32 = 150 << 12;
+
     proptest! {
+        /// Wherever it is from then on left its share only, it stops inside its room.
+        #[test]
+        fn it_can_always_stop_inside_its_room_with_its_share(
+            pulses in 1_i32..4_000, counts in 100_i16..3_000, ticks in 1_u32..200, far: bool
+        ) {
+            let pulse = PulseSize::new(2_500, 1).unwrap();
+            let click = Click::from_nm(100_000).unwrap();
+            let (mut hand, mut made) = (Hand::new(), 0);
+            for _ in 0..ticks {
+                let room = (-1, hand.to_pulses(pulses - made, pulse));
+                hand.turn(click, counts / 40, BOUNDS, if far { ENDLESS } else { room });
+                made += hand.tick(BOUNDS, room, SHARE, pulse);
+                prop_assert!(made + hand.pulses_to_stand(SHARE, pulse) <= pulses);
+            }
+            let stands = made + hand.pulses_to_stand(SHARE, pulse);
+            hand.stop();
+            while !hand.is_at_rest() {
+                made += hand.tick(Bounds { accel: SHARE, ..BOUNDS }, ENDLESS, SHARE, pulse);
+            }
+            prop_assert!(made <= stands && stands <= pulses);
+        }
+
         /// Any turns at any scale, then the same back: the very same pulse, however many were dropped on the way.
         #[test]
         fn what_is_not_dropped_is_moved_exactly(
@@ -201,12 +242,12 @@ mod tests {
                     let counts = if tick == 0 { counts } else { 0 };
                     let dropped = hand.turn(clicks[scale], counts, BOUNDS, ENDLESS);
                     asked += (i64::from(counts) - i64::from(dropped)) * [250, 2_500, 25_000][scale];
-                    made += i64::from(hand.tick(BOUNDS, pulse));
+                    made += i64::from(hand.tick(BOUNDS, ENDLESS, BOUNDS.accel, pulse));
                 }
             }
             while !hand.is_at_rest() {
                 asked -= i64::from(hand.turn(clicks[0], 0, BOUNDS, ENDLESS)) * 250;
-                made += i64::from(hand.tick(BOUNDS, pulse));
+                made += i64::from(hand.tick(BOUNDS, ENDLESS, BOUNDS.accel, pulse));
             }
             // nearest pulse of the nanometres asked for, half up
             let (n, d) = (i64::from(numerator), i64::from(denominator));
@@ -222,13 +263,13 @@ mod tests {
             for _ in 0..ticks {
                 let room = (-1, hand.to_pulses(pulses - made, pulse));
                 dropped += hand.turn(click, counts / 40, BOUNDS, room);
-                made += hand.tick(BOUNDS, pulse);
+                made += hand.tick(BOUNDS, room, SHARE, pulse);
                 prop_assert!(made <= pulses);
             }
             for _ in 0..4_000 {
                 let room = (-1, hand.to_pulses(pulses - made, pulse));
                 dropped += hand.turn(click, 10, BOUNDS, room);
-                made += hand.tick(BOUNDS, pulse);
+                made += hand.tick(BOUNDS, room, SHARE, pulse);
                 prop_assert!(made <= pulses);
             }
             prop_assert_eq!(made, pulses);
@@ -241,13 +282,13 @@ mod tests {
         let (mut hand, pulse) = (Hand::new(), PulseSize::new(1_000, 1).unwrap());
         hand.go(1 << 40);
         for _ in 0..50 {
-            hand.tick(BOUNDS, pulse);
+            hand.tick(BOUNDS, ENDLESS, BOUNDS.accel, pulse);
         }
         assert_eq!(hand.advance(), (50 * 500) << 12);
         hand.stop();
         let ticks = (0..)
             .take_while(|_| {
-                hand.tick(BOUNDS, pulse);
+                hand.tick(BOUNDS, ENDLESS, BOUNDS.accel, pulse);
                 !hand.is_at_rest()
             })
             .count();

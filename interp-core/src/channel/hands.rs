@@ -10,13 +10,16 @@
 //! **Speed.** The hand gets what the program leaves of the axis's largest speed; the program may gain speed only in so far as
 //! the hands leave room. Each keeps clear of what the other may gain in a tick, so the sum stays within the limit.
 //!
+//! **Room.** A hand stops where its axis meets the [fence](super::fence), beside a path that may need a part of the room, and
+//! where the offset meets its bound. It approaches either with its share, so that a program that begins finds it able to stop.
+//!
 //! [`Machine::with_hands`]: crate::config::Machine::with_hands
 
 use super::Memory;
-use super::hand::{ENDLESS, Hand, beside};
-use super::{Channel, State};
+use super::hand::{ENDLESS, Hand, Room, beside};
+use super::{Channel, Current, State};
 use crate::block::Speed;
-use crate::config::{AxisLimits, Machine};
+use crate::config::{AxisLimits, FRACTION_BITS, Machine};
 use crate::drive::follower::Bounds;
 use crate::drive::wheel::Click;
 use crate::math::to_u32;
@@ -38,9 +41,16 @@ struct AxisHand {
     /// Speed of what moves now.
     pace: Speed,
     folds: bool,
+    /// How far the offset may go.
+    bounds: (i32, i32),
+    /// Room in the tick that comes, where it is known already.
+    room: Option<Room>,
     /// The program's position at the last tick.
     at: i32,
 }
+
+/// No bounds.
+const UNBOUND: (i32, i32) = (i32::MIN >> 1, i32::MAX >> 1);
 
 impl AxisHand {
     const fn new(limits: &AxisLimits) -> Self {
@@ -52,6 +62,8 @@ impl AxisHand {
             by_hand: limits.by_hand,
             pace: Speed::MAX,
             folds: false,
+            bounds: UNBOUND,
+            room: None,
             at: 0,
         }
     }
@@ -63,6 +75,30 @@ impl AxisHand {
             Some(pulses) => (beside(self.speed, pulses, self.accel, self.pulse), self.by_hand),
         };
         Bounds { speed: speed.min(self.pace), accel: accel.max(1) }
+    }
+
+    /// What it has of the acceleration beside a program; all, where none was kept for it.
+    const fn share(&self) -> u32 {
+        if self.by_hand > 0 { self.by_hand } else { self.accel }
+    }
+
+    /// Moves for a tick; the pulses.
+    fn tick(&mut self, bounds: Bounds) -> i32 {
+        let room = self.room.take().unwrap_or(ENDLESS);
+        self.hand.tick(bounds, room, self.share(), self.pulse)
+    }
+
+    /// Room of so many pulses as lengths.
+    fn length(&self, (least, most): (i32, i32)) -> Room {
+        let to = |pulses: i32| self.hand.to_pulses(pulses, self.pulse);
+        (to(least).min(0).max(ENDLESS.0), to(most).max(0).min(ENDLESS.1))
+    }
+
+    /// Whole pulses of a length, nm with 12 fraction bits, and one more.
+    fn pulses_of(&self, length: u64) -> i32 {
+        let nm = (length >> FRACTION_BITS).saturating_mul(self.pulse.denominator().into());
+        let pulses = nm.checked_div(self.pulse.numerator().into()).unwrap_or(0).min(u64::from(u32::MAX >> 2));
+        to_u32(pulses).cast_signed().saturating_add(1)
     }
 
     /// The part of a program's speed that is left beside it, 16 fraction bits.
@@ -102,10 +138,11 @@ impl Hands {
     /// Other limits, at rest.
     pub(super) const fn configure(&mut self, machine: &Machine) {
         let offset = self.offset;
-        let folds = (self.x.folds, self.z.folds);
+        let (folds, bounds) = ((self.x.folds, self.z.folds), (self.x.bounds, self.z.bounds));
         *self = Self::new(machine);
         self.offset = offset;
         (self.x.folds, self.z.folds) = folds;
+        (self.x.bounds, self.z.bounds) = bounds;
     }
 
     const fn of(&mut self, axis: Axis) -> &mut AxisHand {
@@ -124,6 +161,32 @@ impl Hands {
 
     pub(super) const fn offset(&self) -> Lattice {
         self.offset
+    }
+
+    /// Pulses until they stand, if they brake beside a program.
+    pub(super) fn braking(&self) -> Lattice {
+        let of = |axis: &AxisHand| axis.hand.pulses_to_stand(axis.share(), axis.pulse);
+        Lattice { x: of(&self.x), z: of(&self.z) }
+    }
+
+    /// Pulses of X and Z that a length, nm with 12 fraction bits, is at most.
+    pub(super) fn pulses_of(&self, length: u64) -> (i32, i32) {
+        (self.x.pulses_of(length), self.z.pulses_of(length))
+    }
+
+    /// More than any path gains in a tick.
+    pub(super) const fn accel(&self) -> Speed {
+        self.x.accel.saturating_add(self.z.accel)
+    }
+
+    /// More than anything needs to brake, with what an S law of so many ticks has planned: nm with 12 fraction bits.
+    pub(super) fn longest_braking(&self, ticks: u8) -> u64 {
+        let speed = u64::from(self.x.speed).saturating_add(self.z.speed.into());
+        let least = |axis: &AxisHand| axis.accel.min(axis.share()).max(1);
+        let accel = u64::from(least(&self.x).min(least(&self.z)));
+        // on an arc turning takes up to half of it
+        let brakes = speed.saturating_mul(speed).checked_div(accel).unwrap_or(u64::MAX);
+        brakes.saturating_add(speed.saturating_mul(u64::from(ticks).saturating_add(16)))
     }
 
     /// Whether none moves nor has to.
@@ -148,7 +211,7 @@ impl Hands {
     fn tick(&mut self, moves: bool, position: Lattice) -> (i32, i32) {
         let moved = |axis: &AxisHand, at: i32| moves.then(|| at.wrapping_sub(axis.at));
         let (x, z) = (self.x.bounds(moved(&self.x, position.x)), self.z.bounds(moved(&self.z, position.z)));
-        let pulses = (self.x.hand.tick(x, self.x.pulse), self.z.hand.tick(z, self.z.pulse));
+        let pulses = (self.x.tick(x), self.z.tick(z));
         let rest = self.at_rest();
         self.left = if rest { ALL } else { self.x.leaves().min(self.z.leaves()) };
         pulses
@@ -177,6 +240,12 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     #[cold]
     fn move_by_hand(&mut self, retract: i32) -> (i32, i32) {
         let moves = self.may_move() || retract != 0;
+        for axis in [Axis::X, Axis::Z] {
+            let hand = self.hands.of(axis);
+            if hand.room.is_none() && !hand.hand.is_at_rest() {
+                let _ = self.find_room(axis, UNBOUND);
+            }
+        }
         // the retract is the program's, too
         let away = self.position.x.wrapping_sub(self.hands.x.at).saturating_abs();
         self.hands.x.at = self.position.x.wrapping_sub(away).wrapping_sub(retract.saturating_abs());
@@ -186,15 +255,45 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             *place = place.wrapping_add(pulses);
         };
         let hands = &mut self.hands;
+        if let Current::Motion(active) = &mut self.current {
+            // the path goes on beside where it began
+            active.from.x = active.from.x.wrapping_add(if hands.x.folds { x } else { 0 });
+            active.from.z = active.from.z.wrapping_add(if hands.z.folds { z } else { 0 });
+        }
         into(hands.x.folds, &mut self.position.x, &mut hands.offset.x, x);
         into(hands.z.folds, &mut self.position.z, &mut hands.offset.z, z);
         (hands.x.at, hands.z.at) = (self.position.x, self.position.z);
         (x, z)
     }
 
-    /// Takes the counts of a handwheel, 4 a detent, each detent worth `click`. `room` is how many pulses the axis may move
-    /// to either side (at most 0, at least 0). Returns the counts dropped.
-    pub fn turn_hand(&mut self, axis: Axis, click: Click, counts: i16, room: (i32, i32)) -> i32 {
+    /// Sets how far the offset may go: to minus (at most 0) and to plus (at least 0), pulses of X and of Z.
+    pub const fn set_bounds(&mut self, x: (i32, i32), z: (i32, i32)) {
+        (self.hands.x.bounds, self.hands.z.bounds) = (x, z);
+    }
+
+    /// Finds the room of an axis's hand in the tick that comes, inside `ends`: pulses, at most 0 and at least 0; and as lengths.
+    fn find_room(&mut self, axis: Axis, ends: (i32, i32)) -> ((i32, i32), Room) {
+        let offset = self.hands.offset;
+        let (mut least, mut most) = ends;
+        let mut bound = |(low, high): (i32, i32)| (least, most) = (least.max(low.min(0)), most.min(high.max(0)));
+        if !self.fence.is_calm(self.tool()) {
+            let span = self.reach(self.crank.back, false).moved(offset);
+            bound(self.fence.room(axis, &span));
+        }
+        let off = if matches!(axis, Axis::X) { offset.x } else { offset.z };
+        let hand = self.hands.of(axis);
+        if !hand.folds {
+            bound((hand.bounds.0.saturating_sub(off), hand.bounds.1.saturating_sub(off)));
+        }
+        let room = hand.length((least, most));
+        hand.room = Some(room);
+        ((least, most), room)
+    }
+
+    /// Takes the counts of a handwheel, 4 a detent, each detent worth `click`. `ends` is how many pulses the axis may move
+    /// to either side (at most 0, at least 0), besides fence and bounds. Returns the counts dropped, and whether there was no room
+    /// at all for them.
+    pub fn turn_hand(&mut self, axis: Axis, click: Click, counts: i16, ends: (i32, i32)) -> (i32, bool) {
         let moves = self.may_move();
         let position = match axis {
             Axis::X => self.position.x,
@@ -202,13 +301,14 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         };
         let hand = self.hands.of(axis);
         if counts == 0 && hand.hand.is_at_rest() {
-            return 0;
+            return (0, false);
         }
+        let ((least, most), room) = self.find_room(axis, ends);
+        let hand = self.hands.of(axis);
         hand.pace = Speed::MAX;
         let bounds = hand.bounds(moves.then(|| position.wrapping_sub(hand.at)));
-        let to = |pulses: i32| hand.hand.to_pulses(pulses, hand.pulse);
-        let room = (to(room.0).min(0).max(ENDLESS.0), to(room.1).max(0).min(ENDLESS.1));
-        hand.hand.turn(click, counts, bounds, room)
+        let dropped = hand.hand.turn(click, counts, bounds, room);
+        (dropped, dropped < 0 && least == 0 || dropped > 0 && most == 0)
     }
 
     /// Moves an axis by so many pulses, at most at `pace`, in the place of all that its hand was to do.
@@ -219,22 +319,11 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         hand.hand.go(by);
     }
 
-    /// Drops what an axis's hand still has to do beyond so many pulses to either side (at most 0, at least 0). Whether it was
+    /// Drops what an axis's hand still has to do beyond `ends` (pulses, at most 0 and at least 0), fence and bounds. Whether it was
     /// too much.
-    pub fn limit_hand(&mut self, axis: Axis, room: (i32, i32)) -> bool {
-        let hand = self.hands.of(axis);
-        let to = |pulses: i32| hand.hand.to_pulses(pulses, hand.pulse);
-        let room = (to(room.0).min(0).max(ENDLESS.0), to(room.1).max(0).min(ENDLESS.1));
-        hand.hand.limit(room)
-    }
-
-    /// How far an axis's hand goes at most if it brakes now beside a program: nm with 12 fraction bits, signed.
-    pub fn hand_braking(&self, axis: Axis) -> i64 {
-        let hand = match axis {
-            Axis::X => &self.hands.x,
-            Axis::Z => &self.hands.z,
-        };
-        hand.hand.braking(hand.by_hand)
+    pub fn limit_hand(&mut self, axis: Axis, ends: (i32, i32)) -> bool {
+        let (_, room) = self.find_room(axis, ends);
+        self.hands.of(axis).hand.limit(room)
     }
 
     /// Stops what a hand does, as soon as its acceleration allows.
@@ -269,6 +358,11 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Sets of which axes the hands move the position (true) and of which they make an offset (false).
     pub const fn fold_hands(&mut self, x: bool, z: bool) {
         (self.hands.x.folds, self.hands.z.folds) = (x, z);
+    }
+
+    /// Whether the hands move the position, of either axis.
+    pub const fn hands_fold(&self) -> bool {
+        self.hands.x.folds || self.hands.z.folds
     }
 
     /// Pulses by which the axes are off the program.

@@ -58,6 +58,11 @@ impl Lead {
         }
     }
 
+    /// Its speed.
+    pub(super) const fn speed(&self) -> Speed {
+        self.speed
+    }
+
     /// The feeds are others: its pace is found anew.
     pub(super) const fn repace(&mut self) {
         self.paced_at = Overrides::AT_LIMIT;

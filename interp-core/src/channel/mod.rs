@@ -10,6 +10,7 @@ mod classic;
 mod conic;
 mod crank;
 mod cruise;
+mod fence;
 pub mod follower;
 mod geared;
 pub mod groove;
@@ -19,7 +20,6 @@ mod lead;
 pub mod lookahead;
 mod margins;
 mod memory;
-mod reach;
 mod retract;
 mod runner;
 mod single;
@@ -46,6 +46,7 @@ use core::borrow::BorrowMut;
 use crank::Crank;
 pub use crank::Pull;
 use cruise::Cruise;
+use fence::Fence;
 use hands::Hands;
 use lead::Lead;
 use lookahead::smooth::is_smoothed;
@@ -186,6 +187,7 @@ pub struct Channel<const N: usize, M = Memory<N>> {
     /// What drives other than time keep.
     crank: Crank,
     hands: Hands,
+    fence: Fence,
     lead: Lead,
     window: Window,
     maker: Maker,
@@ -224,6 +226,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             waited: 0,
             crank: Crank::of(machine),
             hands: Hands::new(machine),
+            fence: Fence::new(),
             lead: Lead::new(),
             window: Window::new(machine.smoothing),
             maker: Maker::new(machine),
@@ -428,16 +431,6 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         self.position
     }
 
-    /// How far the path would go if it braked now, at most: nm with 12 fraction bits.
-    pub fn braking(&self) -> u64 {
-        let Current::Motion(active) = &self.current else { return 0 };
-        let (accel, window) = (u64::from(active.motion.accel.max(1)), u64::from(self.window.ticks()));
-        // two ticks are planned already; an S law runs on by its window, and what it has planned is faster by as much
-        let speed = u64::from(self.speed).saturating_add(accel.saturating_mul(window));
-        let brakes = speed.saturating_mul(speed).checked_div(accel << 1).unwrap_or(0);
-        brakes.saturating_add(speed.saturating_mul(window.saturating_add(2)))
-    }
-
     /// Whether pulses are still to come that are added to a path that stands.
     pub const fn owes(&self) -> bool {
         let runs = matches!(self.state, State::Running | State::Filling | State::Resetting);
@@ -491,6 +484,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
                 self.superpose(x, z, moves);
             }
             if in_cycle {
+                self.keep_inside();
                 output = self.run(out);
             }
         }

@@ -167,6 +167,11 @@ impl ThreadHold {
         self.retract.pulses()
     }
 
+    /// Pulses that X is pulled out by.
+    pub(super) const fn distance(&self) -> i32 {
+        self.distance
+    }
+
     /// X stands where it is from now on: by how many pulses that is off the program.
     pub(super) const fn take(&mut self) -> i32 {
         self.retract.take()
@@ -396,7 +401,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     }
 
     /// Whether the present block is a line that goes farther along Z.
-    fn leads_z(&self) -> bool {
+    pub(super) fn leads_z(&self) -> bool {
         let Current::Motion(active) = &self.current else { return false };
         let ((x, z), (pulse_x, pulse_z)) = (active.motion.curve.end(), self.crank.thread.pulses);
         // both with the same denominator; below 2^31 2^24 2^12

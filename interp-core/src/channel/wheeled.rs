@@ -85,7 +85,10 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let pace = self.crank.pull.map_or(Speed::MAX, |pull| pull.speed);
         let most = root(motion.reachable(to_go.unsigned_abs(), 0));
         self.speed = motion.accel.min(motion.limit).min(most).min(pace).max(1);
-        true
+        if !self.fence.is_calm(self.tool()) && self.is_fenced(self.crank.back) {
+            self.speed = 0;
+        }
+        self.speed > 0
     }
 
     /// Why the way back ends here.

@@ -41,6 +41,11 @@ impl Window {
         self.ticks
     }
 
+    /// How far the lead is ahead of the tool, nm with 12 fraction bits.
+    pub(super) const fn owed(&self) -> u64 {
+        self.owed
+    }
+
     /// Whether the tool is where the lead is.
     pub(super) const fn is_drained(&self) -> bool {
         self.owed == 0

@@ -21,10 +21,18 @@
 
 use super::method::Method;
 use super::proportion::Proportion;
+use crate::math::QUARTER_Q30;
 use crate::units::{Axis, Sense};
 
 /// Largest number of octants that an arc visits.
 pub const MAX_PIECES: usize = 9;
+
+/// The extremes of a curve that passes none.
+pub(crate) const NO_EXTREMES: ((i32, i32), (i32, i32)) = ((i32::MAX, i32::MAX), (i32::MIN, i32::MIN));
+
+/// Angle, 30 fraction bits, that the place on an arc is known to: a 4096th of a radian off an extreme, an arc differs from it by
+/// less than a 2^24th of its radius.
+const NEAR: i64 = 1 << 18;
 
 /// A prepared arc of at most a whole turn.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -75,27 +83,37 @@ pub struct Timeline {
 }
 
 impl Arc {
-    /// The least and the greatest coordinates, X then Z, pulses from the start; a pulse more at an extreme that it passes.
-    pub fn extent(&self) -> ((i32, i32), (i32, i32)) {
-        let (x, z) = self.end;
-        let (mut least, mut most) = ((x.min(0), z.min(0)), (x.max(0), z.max(0)));
+    /// The extremes that it passes between two lengths, nm with 12 fraction bits: the least and the greatest coordinates, X then
+    /// Z, pulses from the start, and a pulse more; [`NO_EXTREMES`] where there is none.
+    ///
+    /// Extremes are a quarter turn apart, and the first one is where the zone of the start has its middle.
+    pub(crate) fn extremes(&self, from: u64, until: u64) -> ((i32, i32), (i32, i32)) {
+        let (mut least, mut most) = NO_EXTREMES;
         #[expect(clippy::cast_possible_truncation, reason = "a curve is within 2^30 pulses")]
         let pulses = |fine: i64| (fine >> 16) as i32;
-        let Timeline { centre: [cx, cz], radius_pulses: [rx, rz], .. } = self.timeline;
+        let Timeline { centre: [cx, cz], radius_pulses: [rx, rz], length, .. } = self.timeline;
         let (rx, rz) = (rx.cast_signed(), rz.cast_signed());
+        let angle = |length: u64| self.timeline.angle.of(length).cast_signed();
+        let (from, until) = (angle(from).wrapping_sub(NEAR), angle(until.min(length)).wrapping_add(NEAR));
         let mut octant = self.octant;
+        // where the first one is met
+        let mut at = i64::from(self.timeline.start_angle).wrapping_neg();
+        if Self::ends_at_tangent(octant, self.sense) {
+            at = at.wrapping_add(QUARTER_Q30);
+        }
         for _ in 1..self.pieces {
-            let next = match self.sense {
-                Sense::CounterClockwise => octant.wrapping_add(1) & 7,
-                Sense::Clockwise => octant.wrapping_sub(1) & 7,
-            };
+            let next = Self::octant_after(octant, self.sense);
             let border = if matches!(self.sense, Sense::CounterClockwise) { next } else { octant };
-            match border {
-                0 => most.1 = most.1.max(pulses(cz.wrapping_add(rz)).wrapping_add(1)),
-                2 => most.0 = most.0.max(pulses(cx.wrapping_add(rx)).wrapping_add(1)),
-                4 => least.1 = least.1.min(pulses(cz.wrapping_sub(rz)).wrapping_sub(1)),
-                6 => least.0 = least.0.min(pulses(cx.wrapping_sub(rx)).wrapping_sub(1)),
-                _ => {}
+            if border & 1 == 0 {
+                let passed = at >= from && at <= until;
+                at = at.wrapping_add(QUARTER_Q30);
+                match border {
+                    0 if passed => most.1 = most.1.max(pulses(cz.wrapping_add(rz)).wrapping_add(1)),
+                    2 if passed => most.0 = most.0.max(pulses(cx.wrapping_add(rx)).wrapping_add(1)),
+                    4 if passed => least.1 = least.1.min(pulses(cz.wrapping_sub(rz)).wrapping_sub(1)),
+                    6 if passed => least.0 = least.0.min(pulses(cx.wrapping_sub(rx)).wrapping_sub(1)),
+                    _ => {}
+                }
             }
             octant = next;
         }

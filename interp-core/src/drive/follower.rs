@@ -42,6 +42,16 @@ pub fn approach(distance: u64, accel: u32) -> i64 {
     distance.saturating_add(less).checked_div(k).unwrap_or(0).min(1 << 32).cast_signed()
 }
 
+/// Whether an end is so far that [`approach`] certainly allows an advance, as it does from
+/// `sqrt(2 a room) - a / 2 - 1 >= sqrt(a room)` on, which holds where `room >= 2 a + 6`, if the advance is below that. One product
+/// tells, in place of roots and divisions in every tick.
+pub(crate) const fn is_far(room: u64, advance: u64, accel: u32) -> bool {
+    let accel = if accel == 0 { 1 } else { accel as u64 };
+    advance >> 31 == 0
+        && room >= accel.saturating_mul(2).saturating_add(6)
+        && advance.wrapping_mul(advance) <= accel.saturating_mul(room)
+}
+
 /// Follows a place.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Follower {
@@ -81,15 +91,37 @@ impl Follower {
     /// ```
     pub fn follow(&mut self, distance: i64, feed: i64, bounds: Bounds, reserve: u32) -> i64 {
         let (accel, speed) = (i64::from(bounds.accel), i64::from(bounds.speed));
-        let behind = distance.saturating_sub(feed);
-        let most = approach(behind.unsigned_abs(), bounds.accel.saturating_sub(reserve).max(1));
-        let closing = if behind < 0 { most.wrapping_neg() } else { most };
+        let closing = toward(distance.saturating_sub(feed), bounds.accel.saturating_sub(reserve));
         let wish = feed.saturating_add(closing).max(speed.wrapping_neg()).min(speed);
         // limits of the acceleration come last: a speed above the largest is left as fast as may be
         let (least, most) = (self.advance.saturating_sub(accel), self.advance.saturating_add(accel));
         self.advance = wish.max(least).min(most);
         self.advance
     }
+
+    /// The same toward a place that stands, and so that from then on braking by `share` a tick stops inside `room` (at most 0, at
+    /// least 0).
+    pub fn follow_inside(&mut self, distance: i64, bounds: Bounds, room: (i64, i64), share: u32) -> i64 {
+        let before = self.advance;
+        let wish = Self { advance: before }.follow(distance, 0, bounds, 0);
+        let end = if wish < 0 { room.0 } else { room.1 };
+        let inside = if is_far(end.unsigned_abs(), wish.unsigned_abs(), share) {
+            wish
+        } else {
+            let most = toward(end, share);
+            if wish < 0 { wish.max(most) } else { wish.min(most) }
+        };
+        // one that the room has shrunk for brakes as hard as it may
+        let accel = i64::from(bounds.accel);
+        self.advance = inside.max(before.saturating_sub(accel)).min(before.saturating_add(accel));
+        self.advance
+    }
+}
+
+/// The largest advance toward a place from which braking by `accel` a tick stops there; signed.
+fn toward(distance: i64, accel: u32) -> i64 {
+    let most = approach(distance.unsigned_abs(), accel.max(1));
+    if distance < 0 { most.wrapping_neg() } else { most }
 }
 
 #[cfg(test)]
@@ -162,6 +194,24 @@ mod tests {
                 left -= follower.follow(left, feed, bounds, 0);
             }
             prop_assert_eq!((left, follower.advance()), (0, feed));
+        }
+
+        /// What is passed unasked is what the question would have allowed.
+        #[test]
+        fn an_end_that_is_far_allows_the_advance(
+            accel in prop_oneof![0_u32..20, 1_u32..u32::MAX], part in 0_u64..1 << 20, advance in 0_u64..1 << 31, bits in 0_u32..31,
+        ) {
+            let advance = advance >> bits;
+            // around where the answer changes
+            let edge = advance.saturating_mul(advance) / u64::from(accel.max(1)) + 2 * u64::from(accel);
+            for room in [edge, edge + part, edge.saturating_sub(part), edge / 2 + part] {
+                prop_assert!(!is_far(room, advance, accel) || approach(room, accel) >= advance.cast_signed(), "{room}");
+            }
+        }
+
+        #[test]
+        fn an_end_far_enough_is_far(accel in 1_u32..1 << 24, advance in 0_u64..1 << 31) {
+            prop_assert!(is_far(advance * advance / u64::from(accel) + 2 * u64::from(accel) + 7, advance, accel));
         }
     }
 }

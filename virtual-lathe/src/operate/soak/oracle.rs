@@ -60,8 +60,6 @@ pub(super) struct Tick<'t> {
     pub(super) pressed: bool,
     /// No wheel's axis moves, nor has to.
     pub(super) rests: bool,
-    /// Pulses that X is out of a thread.
-    pub(super) retracted: i32,
 }
 
 /// What is remembered of an axis.
@@ -203,7 +201,9 @@ impl Oracle {
             books.clicks = Clicks::new();
             books.verified = *shown.verified.of(books.axis);
             // what a compensation had added counts as right from now on, and what was owed is not made any more
-            books.shift = part(shown.position, books.axis) - part(at, books.axis);
+            let shift = part(shown.position, books.axis) - part(at, books.axis);
+            books.own += shift - books.shift;
+            books.shift = shift;
         }
     }
 
@@ -231,8 +231,12 @@ impl Oracle {
     }
 
     /// The place of both axes was told to be right, or motors went on or off.
-    pub(super) fn confirmed(&mut self) {
-        self.axes.iter_mut().for_each(|books| books.allowed = None);
+    pub(super) fn confirmed(&mut self, shown: &Shown) {
+        for books in &mut self.axes {
+            books.allowed = None;
+            // no home was found, whatever the mode
+            books.verified = *shown.verified.of(books.axis);
+        }
     }
 
     /// A request was obeyed that may move a slide, or forgets what a wheel asked for.
@@ -449,17 +453,17 @@ impl Oracle {
             let what = if stands { "at rest" } else { "moving" };
             return Err(("count", format!("{what}, {axis:?} shows {off} pulses more than the pins have counted")));
         }
-        // what X is pulled out of a thread knows no limit yet: that is for those who build it
-        let retracted = if axis == Axis::X { tick.retracted } else { 0 };
-        let own = plain + books.own - retracted;
+        let own = plain + books.own;
+        // of what a compensation has given, a pulse that would turn the axis round may still be owed
+        let owed = i32::from(!stands && *tick.compensation.of(axis) != 0);
         let figures = self.operation.axes.of(axis);
         if verified {
             let (least, most) = figures.limits;
             let allowed = books.allowed.get_or_insert((least.min(own), most.max(own)));
-            if own < allowed.0 || own > allowed.1 {
+            if own < allowed.0 - owed || own > allowed.1 + owed {
                 return Err(("soft-limit", format!("{axis:?} is at {own} of {least} to {most} pulses")));
             }
-            *allowed = (least.min(own), most.max(own));
+            *allowed = (least.min(own).max(allowed.0), most.max(own).min(allowed.1));
             if (own == least || own == most) && books.still == 0 {
                 coverage.happened("soft limit reached");
             }

@@ -378,7 +378,6 @@ impl<'s, H: Hand> Runner<'s, H> {
             compensation,
             pressed: self.pressed,
             rests: foreground.hands_rest(),
-            retracted: foreground.retracted(),
         };
         let mut found = self.oracle.tick(&tick, &mut self.coverage);
         if let (Ok(()), None, Some(alarm)) = (&found, before.alarm, after.alarm) {
@@ -553,7 +552,7 @@ impl<'s, H: Hand> Runner<'s, H> {
                 }
                 self.oracle.placed(axis, &shown, compensation);
             }
-            Command::ConfirmPosition | Command::Motors(_) => self.oracle.confirmed(),
+            Command::ConfirmPosition | Command::Motors(_) => self.oracle.confirmed(&shown),
             Command::MachineLock(on) => {
                 self.oracle.lock(on);
                 self.oracle.obeyed(self.tick, 0);
