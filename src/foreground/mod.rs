@@ -4,6 +4,7 @@
 //! what is not there at a tick's start is taken at the next.
 
 pub mod alarm;
+pub mod answer;
 mod closed_loop;
 pub mod command;
 pub mod contour;
@@ -69,6 +70,8 @@ pub struct Foreground<'q> {
     /// The next tick has something to do on the operator's side: since the last one there was a reading or a request, or what
     /// either has begun still [acts](Desk::acts).
     attended: bool,
+    /// What became of the last request that somebody [waits](answer) for.
+    answer: u32,
     seen: Seen,
     channel: Channel<LOOKAHEAD, &'q mut Memory>,
     desk: Desk,
@@ -89,13 +92,25 @@ impl<'q> Foreground<'q> {
         let channel = Channel::with_memory(machine, position, memory);
         let (outputs, faults) = (Outputs::REST, Faults::default());
         let (desk, seen) = (Desk::new(machine), Seen::NOWHERE);
-        Self { blocks, commands, outputs, alarm: None, faults, open: false, attended: true, seen, channel, desk }
+        Self {
+            blocks,
+            commands,
+            outputs,
+            alarm: None,
+            faults,
+            open: false,
+            attended: true,
+            answer: answer::OBEYED,
+            seen,
+            channel,
+            desk,
+        }
     }
 
     /// Makes one tick of train.
     pub fn tick(&mut self, out: &mut impl Train) -> Report {
         while let Some(command) = self.commands.dequeue() {
-            self.obey(command);
+            self.answer(command);
         }
         if self.alarm.is_some() {
             self.forget();
@@ -185,6 +200,24 @@ impl<'q> Foreground<'q> {
         }
     }
 
+    /// Obeys a command of the queue, and notes what became of it.
+    fn answer(&mut self, command: Command) {
+        let unasked = answer::is_unasked(&command);
+        let result = self.request(command);
+        if !unasked {
+            self.answer = result.map_or_else(answer::number, |()| answer::OBEYED);
+        }
+        if let Err(refusal) = result {
+            self.desk.refuse(refusal);
+        }
+    }
+
+    /// What became of the last request out of the queue that somebody waits for: not a hold, a start, a reset or a feed
+    /// override. [`answer::refusal`] reads it.
+    pub const fn answered(&self) -> u32 {
+        self.answer
+    }
+
     /// Obeys a command at once; the next tick is the first that shows it.
     ///
     /// # Errors
@@ -216,6 +249,11 @@ impl<'q> Foreground<'q> {
     /// What the lathe is doing.
     pub const fn state(&self) -> State {
         self.channel.state()
+    }
+
+    /// The mode.
+    pub const fn mode(&self) -> mode::Mode {
+        self.desk.mode
     }
 
     /// Why the machine is locked.

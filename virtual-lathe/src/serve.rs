@@ -92,8 +92,7 @@ fn run(listener: &TcpListener, fast: bool, settings: Settings, machine: &Machine
     let position = Lattice { x: machine.x.pulse.nearest(start.x), z: machine.z.pulse.nearest(start.z) };
     let mut memory = Memory::new();
     let mut foreground = Foreground::new(machine, position, block_out, command_out, &mut memory);
-    let snapshot =
-        Snapshot { state: State::Idle, position, speed: 0, line: 0, feed_override: 100, underruns: 0, alarm: None };
+    let snapshot = Snapshot::at(position);
     let link = Link::new(parameters, *machine);
     let mut background = Background { link, blocks, commands, snapshot, client: None, heard: Instant::now() };
     let mut cycle = Cycle::new();
@@ -119,16 +118,8 @@ fn run(listener: &TcpListener, fast: bool, settings: Settings, machine: &Machine
         let report = foreground.tick(&mut |event: Event| cycle.event(event));
         turning.tick(&report, foreground.alarm());
         cycle.tick(&report);
-        background.snapshot = Snapshot {
-            state: report.state,
-            position: foreground.position(),
-            speed: report.speed,
-            line: report.line,
-            feed_override: foreground.feed_override(),
-            // nothing plays the train here, so nothing finds it empty
-            underruns: 0,
-            alarm: foreground.alarm(),
-        };
+        // nothing plays the train here, so nothing finds it empty
+        background.snapshot = Snapshot::of(&report, &foreground);
     }
 }
 

@@ -7,6 +7,7 @@ use interp_core::units::{Axis, PulseSize};
 
 use super::refusal::Refusal;
 use super::reply::{Thousandths, scaled};
+use super::requests::Names;
 use super::{Link, RECEIVE_BUFFER, Snapshot};
 use crate::background::parameters::{ParameterError, Parameters};
 use crate::foreground::BLOCK_QUEUE;
@@ -43,7 +44,10 @@ impl Link {
         match text.split_once('=') {
             Some((name, value)) => self.set(name.trim(), value.trim(), idle, snapshot)?,
             None => match text.as_bytes() {
-                b"" => self.say(out, format_args!("[HLP:$$ $G $I $X $name=value $format=gcode ~ ! ? ctrl-x]")),
+                b"" => {
+                    self.say(out, format_args!("[HLP:$$ $G $I $X $name=value $format=gcode ~ ! ? ctrl-x]"));
+                    self.say(out, format_args!("[HLP:{}]", Names));
+                }
                 b"$" => {
                     self.listing = Some(0);
                     return Ok(());

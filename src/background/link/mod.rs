@@ -11,6 +11,7 @@
 //! - `$`, `$$`, `$G`, `$I`, `$X`: help, parameters, what is modal, version, unlock.
 //! - `$name=value` sets a parameter; also `$100 $102 $110 $112 $120 $122`, as Grbl numbers them. `$format=nc1973` and
 //!   `$format=gcode` choose how programs are read. Only while idle.
+//! - `$mode=handwheel` and the like are the operator's [requests](requests).
 //! - Anything else is a line of a program. M2, M30 or a closing `%` ends the program; the next begins where the tool is.
 //!
 //! # Cycles
@@ -34,7 +35,7 @@
 //! - "Idle" is believed only of a snapshot taken after all commands were obeyed (`Settling`).
 //!
 //! # Left out
-//! Jogging, homing, probing, offsets, check mode.
+//! Jogging, probing, offsets of G-code, check mode.
 
 #![cfg_attr(not(test), deny(clippy::arithmetic_side_effects))]
 
@@ -45,6 +46,7 @@ mod program;
 mod receiver;
 mod refusal;
 mod reply;
+mod requests;
 mod status;
 #[cfg(test)]
 mod tests;
@@ -66,6 +68,7 @@ use outbox::{Flow, Outbox, Settling};
 use program::Accessories;
 use receiver::{Received, Receiver};
 use refusal::Refusal;
+use requests::Asked;
 use status::{Known, Rounds};
 
 pub use receiver::RECEIVE_BUFFER;
@@ -155,6 +158,8 @@ pub struct Link {
     alarm: Option<Alarm>,
     /// `$X` waits for its answer.
     unlocking: bool,
+    /// A request waits for its answer.
+    asked: Option<Asked>,
     /// The operator holds: nothing is started.
     held: bool,
     /// The position is one that no program can start from, so none does.
@@ -194,6 +199,7 @@ impl Link {
             resetting: false,
             alarm: None,
             unlocking: false,
+            asked: None,
             held: false,
             lost: false,
             busy: false,
@@ -300,6 +306,9 @@ impl Link {
         if self.unlocking {
             return self.unlocked(snapshot, out);
         }
+        if let Some(asked) = self.asked {
+            return self.answered(asked, blocks.is_empty(), snapshot, out);
+        }
         if still && !self.held && !blocks.is_empty() {
             self.outbox.flow = Some(Flow::Start);
             self.send(commands);
@@ -321,7 +330,7 @@ impl Link {
         let Some(received) = self.receiver.take(&mut self.line) else { return self.wait(blocks) };
         self.waited = 0;
         let result = match received {
-            Received::Line => self.obey(idle, snapshot, out),
+            Received::Line => self.obey(idle, blocks.is_empty(), snapshot, out),
             Received::Nothing => {
                 self.owes_ok = true;
                 Ok(())
@@ -397,12 +406,18 @@ impl Link {
     }
 
     /// Obeys the line just taken. Where it has to be answered later, `owes_ok` is set.
-    fn obey(&mut self, idle: bool, snapshot: &Snapshot, out: &mut impl Write) -> Result<(), Refusal> {
+    fn obey(&mut self, idle: bool, empty: bool, snapshot: &Snapshot, out: &mut impl Write) -> Result<(), Refusal> {
         let line = core::mem::take(&mut self.line);
         let text = line.trim_ascii();
         let result = match (text.strip_prefix(b"$"), self.alarm) {
-            (Some(command), _) => self.command(command, idle && !self.held, snapshot, out),
+            (Some(command), _) => match self.request(command, empty, snapshot) {
+                Some(result) => result,
+                None => self.command(command, idle && !self.held, snapshot, out),
+            },
             (None, Some(alarm)) if !text.is_empty() => Err(Refusal::Locked(alarm)),
+            (None, None) if !text.is_empty() && !requests::takes_programs(snapshot) => {
+                Err(Refusal::Mode(snapshot.mode))
+            }
             (None, _) => self.follow(idle, snapshot).and_then(|()| self.program(&line, out)),
         };
         self.line = line;
@@ -417,7 +432,10 @@ impl Link {
         self.owes_ok = false;
         self.listing = None;
         self.unlocking = false;
+        self.asked = None;
         self.outbox.unlock = false;
+        self.outbox.request = None;
+        self.outbox.confirm = false;
         self.held = false;
         self.resetting = true;
         self.outbox.flow = None;

@@ -41,10 +41,12 @@ pub(super) struct Outbox {
     pub(super) optional_stop: Option<bool>,
     /// Hold or start.
     pub(super) flow: Option<Flow>,
+    /// What the operator asks for.
+    pub(super) request: Option<Command>,
 }
 
 impl Outbox {
-    /// Sends what there is, and as much as fits: a reset first, a start last. True if anything was sent or is left.
+    /// Sends what there is, and as much as fits: a reset first, a request last. True if anything was sent or is left.
     pub(super) fn send(&mut self, commands: &mut Producer<'_, Command>) -> bool {
         let mut any = false;
         while let Some(command) = self.first() {
@@ -60,8 +62,8 @@ impl Outbox {
                 Command::Unlock => (self.unlock, self.confirm) = (false, true),
                 Command::ConfirmPosition => self.confirm = false,
                 Command::OptionalStop(_) => self.optional_stop = None,
-                // a start or a hold: the link sends nothing else
-                _ => self.flow = None,
+                Command::Start | Command::Hold => self.flow = None,
+                _ => self.request = None,
             }
         }
         any
@@ -91,9 +93,10 @@ impl Outbox {
         if let Some(on) = self.optional_stop {
             return Some(Command::OptionalStop(on));
         }
-        self.flow.map(|flow| match flow {
-            Flow::Hold => Command::Hold,
-            Flow::Start => Command::Start,
-        })
+        match self.flow {
+            Some(Flow::Hold) => Some(Command::Hold),
+            Some(Flow::Start) => Some(Command::Start),
+            None => self.request,
+        }
     }
 }

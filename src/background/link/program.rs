@@ -109,9 +109,10 @@ impl Link {
         Compiler::new(settings, self.format, &self.machine)
     }
 
-    /// Where the tool is, to the nanometre: as programmed, if it is there.
+    /// Where the program's place is, to the nanometre: as programmed, if it is there. What handwheels and wear add to it
+    /// stays beside the program.
     pub(super) fn present(&self, machine: &Machine, snapshot: &Snapshot) -> Option<Point> {
-        let (at, same) = (snapshot.position, *machine == self.machine);
+        let (at, same) = (snapshot.programmed, *machine == self.machine);
         if same && at == self.compiler.lattice() {
             return Some(self.compiler.programmed());
         }
@@ -120,7 +121,7 @@ impl Link {
 
     /// Where something else than the program has moved the tool, the program goes on from where it is.
     pub(super) fn follow(&mut self, idle: bool, snapshot: &Snapshot) -> Result<(), Refusal> {
-        if self.lost || (idle && snapshot.position != self.compiler.lattice()) {
+        if self.lost || (idle && snapshot.programmed != self.compiler.lattice()) {
             let mut settings = self.parameters.settings();
             settings.start = self.present(&self.machine, snapshot).ok_or(Refusal::Position)?;
             self.compiler.configure(settings, &self.machine);

@@ -9,15 +9,20 @@
 //! | 202 | comment without its end |
 //! | 203 | an O word that is not the first of its line |
 //! | 204 | the tool is past 2.1 m from zero, where no program can start |
+//! | 205 | the foreground refuses a request |
+//! | 206 | a line of a program in a mode that runs none |
 
 use core::fmt;
 
 use feature_editor::codes::{DiagnosticKind, MAX_LINE};
 use interp_core::config::ConfigError;
 
+use super::requests::{Cause, Wrong};
 use crate::background::compile::Finding;
 use crate::background::parameters::ParameterError;
 use crate::foreground::alarm::Alarm;
+use crate::foreground::mode::Mode;
+use crate::foreground::refusal as foreground;
 
 /// Why a line was refused. A refusal changes nothing.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -50,6 +55,14 @@ pub(super) enum Refusal {
     PowerOn,
     /// The tool is past 2.1 m.
     Position,
+    /// A request that is written wrong.
+    Wrong(Wrong),
+    /// Blocks wait, and the request would change what they lead to.
+    Waiting,
+    /// A request that the foreground refuses.
+    Request(foreground::Refusal),
+    /// A line of a program in this mode, which runs none.
+    Mode(Mode),
 }
 
 impl Refusal {
@@ -62,8 +75,17 @@ impl Refusal {
             Self::TooLong => 11,
             Self::Overflow(_) => 200,
             Self::Damaged => 201,
-            Self::NotIdle => 8,
-            Self::Locked(_) => 9,
+            Self::NotIdle
+            | Self::Waiting
+            | Self::Request(
+                foreground::Refusal::Moving | foreground::Refusal::CycleUnderWay | foreground::Refusal::Running,
+            ) => 8,
+            Self::Locked(_) | Self::Request(foreground::Refusal::Alarm(_)) => 9,
+            Self::Wrong(Wrong { cause: Cause::Missing | Cause::Number(_), .. }) => 2,
+            Self::Wrong(Wrong { cause: Cause::Range(_), .. }) => 52,
+            Self::Wrong(Wrong { cause: Cause::Word(_) | Cause::More, .. }) => 3,
+            Self::Request(_) => 205,
+            Self::Mode(_) => 206,
             Self::Lasting(_) => 50,
             Self::Command | Self::Parameter(ParameterError::Unknown) => 3,
             Self::Homing => 5,
@@ -168,12 +190,16 @@ impl fmt::Display for Refusal {
             Self::Lasting(alarm) => write!(f, "still there: {alarm}; release it, then $X"),
             Self::NotIdle => f.write_str("only while the machine is idle"),
             Self::Command => f.write_str("there is no such command; $ lists them"),
-            Self::Homing => f.write_str("there are no homing switches"),
+            Self::Homing => f.write_str("one axis after the other: $mode=home, then $home=x or $home=z"),
             Self::Parameter(error) => error.fmt(f),
             Self::Number => f.write_str("a number above zero with a decimal point, such as 800.000"),
             Self::Machine(error) => error.fmt(f),
             Self::PowerOn => f.write_str("start says where the tool is at power-on, and it may have moved since"),
             Self::Position => f.write_str("the tool would be past 2100 mm from zero, where no program can start"),
+            Self::Wrong(wrong) => wrong.fmt(f),
+            Self::Waiting => f.write_str("blocks of a program wait: ~ starts them, ctrl-x forgets them"),
+            Self::Request(refusal) => write!(f, "{}: {refusal}", refusal.name()),
+            Self::Mode(mode) => write!(f, "mode {} runs no program: $mode=auto first", mode.name()),
         }
     }
 }

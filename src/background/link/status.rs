@@ -6,11 +6,13 @@
 use core::fmt::{self, Write};
 
 use interp_core::block::Speed;
-use interp_core::channel::State;
+use interp_core::channel::{Report, State};
 use interp_core::config::Machine;
 use interp_core::units::Lattice;
 
 use crate::foreground::alarm::Alarm;
+use crate::foreground::mode::Mode;
+use crate::foreground::{self, Foreground};
 
 use super::reply::{micrometres, scaled};
 
@@ -31,6 +33,46 @@ pub struct Snapshot {
     pub underruns: u32,
     /// Why the machine is locked.
     pub alarm: Option<Alarm>,
+    /// Where the program's last pulse planned leads: without what handwheels and wear add.
+    pub programmed: Lattice,
+    /// The mode.
+    pub mode: Mode,
+    /// Why the last request was refused; `None` where it was obeyed.
+    pub answer: Option<foreground::refusal::Refusal>,
+}
+
+impl Snapshot {
+    /// A lathe that stands idle in automatic.
+    pub const fn at(position: Lattice) -> Self {
+        Self {
+            state: State::Idle,
+            position,
+            speed: 0,
+            line: 0,
+            feed_override: 100,
+            underruns: 0,
+            alarm: None,
+            programmed: position,
+            mode: Mode::Automatic,
+            answer: None,
+        }
+    }
+
+    /// What a tick has made, by a foreground whose train nothing has found empty.
+    pub fn of(report: &Report, foreground: &Foreground<'_>) -> Self {
+        Self {
+            state: report.state,
+            position: foreground.position(),
+            speed: report.speed,
+            line: report.line,
+            feed_override: foreground.feed_override(),
+            underruns: 0,
+            alarm: foreground.alarm(),
+            programmed: foreground.programmed(),
+            mode: foreground.mode(),
+            answer: foreground::answer::refusal(foreground.answered()),
+        }
+    }
 }
 
 /// Reports between two that show the offset, idle and busy, and between two that show the overrides.
@@ -104,6 +146,9 @@ impl Rounds {
         write!(out, "|MPos:{x},0.000,{z}|Bf:{},{}", known.blocks, known.bytes)?;
         if snapshot.line > 0 {
             write!(out, "|Ln:{}", snapshot.line)?;
+        }
+        if !matches!(snapshot.mode, Mode::Automatic) {
+            write!(out, "|Mode:{}", snapshot.mode.name())?;
         }
         write!(out, "|FS:{feed},{}", scaled(known.milli_rpm.into(), 1, 1_000))?;
         if snapshot.underruns > 0 {

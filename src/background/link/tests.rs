@@ -9,6 +9,7 @@ mod hostile;
 mod lines;
 mod panel;
 mod realtime_bytes;
+mod requests;
 mod streams;
 
 use super::*;
@@ -63,8 +64,7 @@ impl Bench {
         let position = Lattice { x: pulse.0.nearest(start.x), z: pulse.1.nearest(start.z) };
         let (blocks, block_out) = Box::leak(Box::new(Queue::<Block, BLOCK_QUEUE>::new())).split();
         let (commands, command_out) = Box::leak(Box::new(Queue::<Command, COMMAND_QUEUE>::new())).split();
-        let snapshot =
-            Snapshot { state: State::Idle, position, speed: 0, line: 0, feed_override: 100, underruns: 0, alarm: None };
+        let snapshot = Snapshot::at(position);
         Self {
             link: Link::new(parameters, machine),
             foreground: Foreground::new(&machine, position, block_out, command_out, Box::leak(Box::default())),
@@ -127,15 +127,7 @@ impl Bench {
                 self.train = Train { hash: self.hash.value(), ticks: self.ticks, pulses: self.pulses };
             }
         }
-        self.snapshot = Snapshot {
-            state: report.state,
-            position: self.foreground.position(),
-            speed: report.speed,
-            line: report.line,
-            feed_override: self.foreground.feed_override(),
-            underruns: 0,
-            alarm: self.foreground.alarm(),
-        };
+        self.snapshot = Snapshot::of(&report, &self.foreground);
     }
 
     /// Counts rising edges: where the motors are.

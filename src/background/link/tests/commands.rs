@@ -32,7 +32,9 @@ fn settings_are_listed_under_numbers_and_names() {
 #[test]
 fn the_queries_of_senders_are_answered() {
     let mut bench = Bench::new();
-    assert_eq!(bench.ask("$\n"), "[HLP:$$ $G $I $X $name=value $format=gcode ~ ! ? ctrl-x]\r\nok\r\n");
+    let help = bench.ask("$\n");
+    assert!(help.starts_with("[HLP:$$ $G $I $X $name=value $format=gcode ~ ! ? ctrl-x]\r\n[HLP:$mode= "), "{help}");
+    assert!(help.ends_with(" $confirm-position]\r\nok\r\n"), "{help}");
     assert_eq!(bench.ask("$G\n"), "[GC:G0 G8 G18 G21 G90 G94 M5 T0 F0.000 S0]\r\nok\r\n");
     bench.ask("G1 X0 G7 G91 G20 F2 S500 M4 T0102\n");
     assert_eq!(bench.ask("$g\n"), "[GC:G1 G7 G18 G20 G91 G94 M4 T1 F2.000 S500]\r\nok\r\n");
