@@ -46,8 +46,8 @@ mod app {
     use stm32f4xx_hal::pac::Interrupt;
 
     use crate::board::{
-        self, Bench, Board, Contact, Controls, Drives, EmergencyInput, Fall, Memory, Receiver, Sender, StepPort,
-        StepTimer, Teller, Watchdog, Width,
+        self, Bench, Board, Contact, Controls, Drives, EmergencyInput, Fall, Memory as Backup, Receiver, Sender,
+        StepPort, StepTimer, Teller, Watchdog, Width,
     };
 
     /// Bytes on their way to the link: what a sender may have under way.
@@ -90,7 +90,7 @@ mod app {
         watchdog: Watchdog,
         heartbeat: Heartbeat,
         keeper: Keeper,
-        memory: Memory,
+        backup: Backup,
         bench: Bench,
         receiver: Receiver,
         inbox: Inbox<'static>,
@@ -129,7 +129,7 @@ mod app {
         let foreground = make(cx.local.foreground_place, new);
         foreground.obey(Command::FeedOverride(parameters.feed_override()));
         foreground.obey(Command::Settle(parameters.operation(&machine)));
-        let (keeper, found) = Keeper::new(&machine, &have.memory);
+        let (keeper, found) = Keeper::new(&machine, &have.backup);
         if let Some(found) = found {
             foreground.restore(&found);
         }
@@ -137,7 +137,7 @@ mod app {
         if have.restarted {
             foreground.raise(Alarm::Watchdog);
         }
-        if Memory::DOUBTFUL {
+        if Backup::DOUBTFUL {
             foreground.raise(Alarm::PowerReturned);
         }
         let link = make(cx.local.link_place, || Link::new(parameters, machine));
@@ -160,7 +160,7 @@ mod app {
                 watchdog: have.watchdog,
                 heartbeat: Heartbeat::new(),
                 keeper,
-                memory: have.memory,
+                backup: have.backup,
                 bench: have.bench,
                 receiver: have.receiver,
                 inbox,
@@ -263,10 +263,10 @@ mod app {
     }
 
     /// Talks with the sender and compiles what it sends.
-    #[task(binds = I2C3_EV, priority = 1, local = [link, sender, bytes, realtime, blocks, commands, keeper, memory, told: Option<Alarm> = None, teller: Teller = Teller::new()])]
+    #[task(binds = I2C3_EV, priority = 1, local = [link, sender, bytes, realtime, blocks, commands, keeper, backup, told: Option<Alarm> = None, teller: Teller = Teller::new()])]
     fn edit(cx: edit::Context) {
         let edit::LocalResources {
-            link, sender, bytes, realtime, blocks, commands, keeper, memory, told, teller, ..
+            link, sender, bytes, realtime, blocks, commands, keeper, backup, told, teller, ..
         } = cx.local;
         #[cfg(feature = "planted-panic")]
         board::plant();
@@ -283,7 +283,7 @@ mod app {
             }
         }
         if let Some(kept) = RECORD.read() {
-            keeper.keep(&kept, memory);
+            keeper.keep(&kept, backup);
         }
         let alarm = STATUS.snapshot().alarm;
         if core::mem::replace(told, alarm) != alarm {

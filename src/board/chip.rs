@@ -69,7 +69,7 @@ where
         fall,
         width,
         drives,
-        memory: Memory::open(memory.0, &memory.1, rcc),
+        backup: Memory::open(memory.0, &memory.1, rcc),
         emergency: EmergencyInput,
         contact: Contact,
         controls,

@@ -101,7 +101,7 @@ pub(crate) struct Board {
     /// Enable pins of motor drivers and spindle.
     pub(crate) drives: Drives,
     /// What a loss of power leaves.
-    pub(crate) memory: Memory,
+    pub(crate) backup: Memory,
     /// Interrupt of the emergency stop.
     pub(crate) emergency: EmergencyInput,
     /// Level of the emergency stop.

@@ -57,7 +57,7 @@ pub(crate) fn setup(dp: Peripherals) -> Board {
         fall,
         width,
         drives: Drives,
-        memory: Memory,
+        backup: Memory,
         emergency: EmergencyInput,
         contact: Contact,
         controls: Controls,

@@ -123,8 +123,10 @@ pub fn refusal(command: &Command, now: &Situation) -> Option<Refusal> {
         | Command::OptionalStop(_)
         | Command::SingleBlock(_)
         | Command::Scale(_)
-        | Command::FeedRate(_)
-        | Command::StopAt(..) => None,
+        | Command::FeedRate(_) => None,
+        // a feed under way has the stops that it began with
+        Command::StopAt(..) if matches!(mode, Mode::Power) => at_rest(now),
+        Command::StopAt(..) => None,
         Command::DryRun(_) | Command::MachineLock(_) | Command::Configure(_) | Command::Settle(_) => free(now),
         Command::Zero(..) => free(now).or(locked(now)),
         Command::ConfirmPosition => at_rest(now).or(locked(now)).or(powered(now)),

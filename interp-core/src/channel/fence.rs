@@ -158,6 +158,8 @@ pub(super) struct Fence {
     calm: Span,
     /// Where the path was held: the axis, and whether to plus.
     met: Option<(Axis, bool)>,
+    /// What the path leads through if it brakes in the tick to come, once somebody has asked.
+    brakes: Option<Span>,
 }
 
 impl Fence {
@@ -165,7 +167,13 @@ impl Fence {
     pub(super) const fn new() -> Self {
         let far = Lattice { x: FAR, z: FAR };
         let all = Span { least: Lattice { x: -FAR, z: -FAR }, most: far };
-        Self { inside: all, calm: all, met: None }
+        Self { inside: all, calm: all, met: None, brakes: None }
+    }
+
+    /// The path goes on.
+    #[inline]
+    pub(super) const fn forget(&mut self) {
+        self.brakes = None;
     }
 
     /// Whether nothing there is braked past it.
@@ -199,6 +207,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// [`offset`](Self::offset) and what X is [pulled out](Self::retracted) by. What is 2^30 pulses off is as good as no limit.
     pub fn set_fence(&mut self, least: Lattice, most: Lattice) {
         self.fence.inside = Span { least, most };
+        self.fence.brakes = None;
         let way = self.hands.longest_braking(self.window.ticks());
         let (mut x, z) = self.hands.pulses_of(way);
         x = x.saturating_add(self.crank.thread.distance().saturating_abs());
@@ -206,6 +215,16 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let least = Lattice { x: near(least.x, x), z: near(least.z, z) };
         let most = Lattice { x: near(most.x, x.wrapping_neg()), z: near(most.z, z.wrapping_neg()) };
         self.fence.calm = Span { least, most };
+    }
+
+    /// What the path leads through if it brakes in the tick to come, in the program's pulses.
+    pub(super) fn braking_reach(&mut self) -> Span {
+        if let Some(span) = self.fence.brakes {
+            return span;
+        }
+        let span = self.reach(self.crank.back, false);
+        self.fence.brakes = Some(span);
+        span
     }
 
     /// Where the path was held before the fence since this was asked last: the axis, and whether to plus.
@@ -217,7 +236,9 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Holds the path where it must not go on for another tick.
     #[inline]
     pub(super) fn keep_inside(&mut self) {
-        if matches!(self.state, State::Running) && !self.fence.is_calm(self.tool()) {
+        // a thread can't be held in its groove: it is looked at before it begins, wherever that is
+        let begins = self.crank.in_thread && self.speed == 0;
+        if matches!(self.state, State::Running) && (begins || !self.fence.is_calm(self.tool())) {
             self.look_ahead_to_fence();
         }
     }
@@ -256,11 +277,13 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     }
 
     /// What the path leads through before it stands, in the program's pulses: if it brakes now, or goes on for a tick.
-    pub(super) fn reach(&self, back: bool, goes_on: bool) -> Span {
+    fn reach(&self, back: bool, goes_on: bool) -> Span {
         if self.crank.in_thread {
             return self.thread_reach();
         }
-        let smooth = self.window.ticks() > 0 && !self.crank.turns && self.follows();
+        // behind the newest motion the path goes by the linear law
+        let behind = self.memory.borrow().trail.is_behind();
+        let smooth = self.window.ticks() > 0 && !self.crank.turns && self.follows() && !behind;
         let (speed, owed) = if smooth { (self.lead.speed(), self.window.owed()) } else { (self.speed, 0) };
         let mut braking = Braking { way: owed, squared: square(speed), gains: None, begins: false };
         if goes_on {
@@ -274,8 +297,14 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             return span;
         }
         let mut see = |at: Lattice, all: Span, motion: &Motion, room: u64, braking: &mut Braking| {
-            let (x, z) = self.hands.pulses_of(braking.through(motion, self.rest, room));
-            span = span.and(all.near(at, (x.saturating_add(ROUGH), z.saturating_add(ROUGH))));
+            let covered = braking.through(motion, self.rest, room);
+            // no place of a motion is farther off than its length
+            span = span.and(if covered >= motion.length {
+                all
+            } else {
+                let (x, z) = self.hands.pulses_of(covered);
+                all.near(at, (x.saturating_add(ROUGH), z.saturating_add(ROUGH)))
+            });
         };
         let (mut begins, mut ends) = (self.position, self.position);
         if let Current::Motion(active) = &self.current {
@@ -294,6 +323,9 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             return span;
         }
         for later in memory.trail.later() {
+            if braking.stands() {
+                break;
+            }
             see(ends, whole(ends, later), later, later.length, &mut braking);
             ends = plus(ends, end(later));
         }

@@ -229,7 +229,11 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     pub(super) fn by_hand(&mut self, retract: i32) -> (i32, i32) {
         let (x, z) = core::mem::take(&mut self.hands.correction);
         if self.hands.at_rest() {
-            self.hands.touched = false;
+            if core::mem::take(&mut self.hands.touched) {
+                // an emergency may have stopped a hand at speed
+                self.hands.left = ALL;
+                (self.hands.x.room, self.hands.z.room) = (None, None);
+            }
             (self.hands.x.at, self.hands.z.at) = (self.position.x, self.position.z);
             return (x, z);
         }
@@ -277,7 +281,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let (mut least, mut most) = ends;
         let mut bound = |(low, high): (i32, i32)| (least, most) = (least.max(low.min(0)), most.min(high.max(0)));
         if !self.fence.is_calm(self.tool()) {
-            let span = self.reach(self.crank.back, false).moved(offset);
+            let span = self.braking_reach().moved(offset);
             bound(self.fence.room(axis, &span));
         }
         let off = if matches!(axis, Axis::X) { offset.x } else { offset.z };

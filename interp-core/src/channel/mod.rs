@@ -483,6 +483,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             if x != 0 || z != 0 || self.compensation.is_on() {
                 self.superpose(x, z, moves);
             }
+            self.fence.forget();
             if in_cycle {
                 self.keep_inside();
                 output = self.run(out);
@@ -513,6 +514,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let driven = self.crank.driven;
         // each count is told once
         self.crank.driven.dropped = 0;
+        self.crank.driven.back_end = None;
         Report { state: self.state, in_cycle, output, line: self.line, speed: self.speed, driven }
     }
 
