@@ -115,6 +115,23 @@ fn machine_lock_takes_up_no_play() {
 }
 
 #[test]
+fn machine_lock_that_is_asked_for_twice_still_ends() {
+    let mut bench = with_play(Mode::Handwheel);
+    bench.ask(Command::MachineLock(true)).unwrap();
+    bench.turn(Axis::Z, -4, 5);
+    bench.settle();
+    bench.ticks(500);
+    bench.ask(Command::MachineLock(true)).unwrap();
+    bench.ask(Command::MachineLock(false)).unwrap();
+    assert_eq!((bench.at, bench.shown().position), (NONE, NONE));
+    // pulses are made again
+    bench.turn(Axis::Z, -4, 1);
+    bench.settle();
+    assert_ne!(bench.at.z, 0);
+    assert_eq!(off(&bench), NONE);
+}
+
+#[test]
 fn motors_go_off_only_when_the_play_is_taken_up() {
     let mut bench = with_play(Mode::Handwheel);
     bench.turn(Axis::Z, -4, 3);
