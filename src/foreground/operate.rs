@@ -212,9 +212,13 @@ impl Foreground<'_> {
         })
     }
 
-    /// Cycle start waits until the handwheels rest: they have all of the acceleration while the program stands.
+    /// Cycle start waits until the handwheels rest: they have all of the acceleration while the program stands. A guard that was
+    /// opened meanwhile ends it: what is started would move for a tick, and turn the spindle, before it is held.
     pub(super) fn start_when_still(&mut self) {
-        if self.desk.starting && self.channel.hands_rest() {
+        if self.desk.starting && self.desk.inputs.guard {
+            self.desk.starting = false;
+            self.desk.refuse(Refusal::GuardOpen);
+        } else if self.desk.starting && self.channel.hands_rest() {
             self.desk.starting = false;
             let _ = self.channel.start();
         }
