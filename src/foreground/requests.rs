@@ -23,6 +23,7 @@ impl Foreground<'_> {
         let moves = self.channel.speed() > 0
             || !self.channel.hands_rest()
             || self.channel.owes()
+            || self.channel.wheel_asks()
             || desk.homing.axis().is_some()
             || desk.starting
             || matches!(desk.nulling, Nulling::Waits)
