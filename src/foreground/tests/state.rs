@@ -120,7 +120,7 @@ fn the_table_of_modes() {
 }
 
 #[test]
-fn a_guard_that_opens_while_a_start_waits_for_the_wheels_ends_it() {
+fn a_guard_that_opens_while_a_start_waits_for_the_wheels_holds_it_before_it_moves() {
     let mut bench = Bench::with(&[("x.max_accel", "100")]);
     bench.load("G1 Z20 F600");
     bench.turn(Axis::X, 40, 20);
@@ -128,13 +128,13 @@ fn a_guard_that_opens_while_a_start_waits_for_the_wheels_ends_it() {
     assert!(!bench.foreground.hands_rest());
     bench.inputs.guard = true;
     bench.settle();
-    assert_eq!((bench.at.z, bench.shown().state, bench.refused()), (0, State::Idle, Some(Refusal::GuardOpen)));
+    assert_eq!((bench.at.z, bench.shown().state, bench.refused()), (0, State::Holding, Some(Refusal::GuardOpen)));
+    assert!(bench.track.iter().all(|at| at.z == 0));
     bench.inputs.guard = false;
-    bench.load("G1 Z20 F600");
     bench.tick();
     bench.ask(Command::Start).unwrap();
     bench.settle();
-    assert_eq!(bench.at.z, 8_000);
+    assert_eq!((bench.at.z, bench.shown().state), (8_000, State::Ended));
 }
 
 #[test]
