@@ -212,11 +212,15 @@ impl Foreground<'_> {
         })
     }
 
-    /// Cycle start waits until the handwheels rest: they have all of the acceleration while the program stands.
+    /// Cycle start waits until the handwheels rest: they have all of the acceleration while the program stands. Where a guard was
+    /// opened meanwhile it is held before it moves.
     pub(super) fn start_when_still(&mut self) {
         if self.desk.starting && self.channel.hands_rest() {
             self.desk.starting = false;
             let _ = self.channel.start();
+            if self.desk.inputs.guard && self.channel.hold() {
+                self.desk.refuse(Refusal::GuardOpen);
+            }
         }
     }
 

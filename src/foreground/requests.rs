@@ -23,6 +23,7 @@ impl Foreground<'_> {
         let moves = self.channel.speed() > 0
             || !self.channel.hands_rest()
             || self.channel.owes()
+            || self.channel.wheel_asks()
             || desk.homing.axis().is_some()
             || desk.starting
             || matches!(desk.nulling, Nulling::Waits)
@@ -199,12 +200,9 @@ impl Foreground<'_> {
 
     /// Machine lock: while it is on only the display moves; then it goes back to where the axes are.
     fn lock(&mut self, on: bool) {
-        if on && self.desk.locked.is_none() && self.channel.mute(true) {
-            let (position, offset) = (self.channel.position(), self.channel.offset());
-            let desk = &mut self.desk;
-            let (kept, wear, datum, verified) = (desk.kept, desk.wear, desk.datum, desk.verified);
-            desk.locked = Some(Locked { position, offset, kept, wear, datum, verified });
-        } else if let (false, Some(locked)) = (on, self.desk.locked.take()) {
+        if on {
+            self.lock_up();
+        } else if let Some(locked) = self.desk.locked.take() {
             self.drop_path();
             self.channel.set_position(locked.position);
             self.channel.set_offset(locked.offset);
@@ -214,6 +212,16 @@ impl Foreground<'_> {
             // what was lost meanwhile is lost; what was found was not the axes' place
             desk.verified.x &= locked.verified.x;
             desk.verified.z &= locked.verified.z;
+        }
+    }
+
+    /// Notes where the axes stand and makes no pulses from now on; once only: what is noted is needed for the way back.
+    fn lock_up(&mut self) {
+        if self.desk.locked.is_none() && self.channel.mute(true) {
+            let (position, offset) = (self.channel.position(), self.channel.offset());
+            let desk = &mut self.desk;
+            let (kept, wear, datum, verified) = (desk.kept, desk.wear, desk.datum, desk.verified);
+            desk.locked = Some(Locked { position, offset, kept, wear, datum, verified });
         }
     }
 

@@ -259,8 +259,12 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
                 }
             }
             self.crank.driven.dropped = i32::from(counts);
-            if counts < 0 && matches!(self.crank.drive, Drive::Wheel(_)) {
-                self.crank.driven.back_end = Some(BackEnd::Dwell);
+            if let Drive::Wheel(click) = self.crank.drive {
+                // what was asked for before a dwell does not set off by itself behind it
+                self.drop_rest(click);
+                if counts < 0 {
+                    self.crank.driven.back_end = Some(BackEnd::Dwell);
+                }
             }
             return None;
         }

@@ -431,9 +431,17 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         self.position
     }
 
+    /// Whether a wheel has asked for way along the path that is still to come.
+    pub const fn wheel_asks(&self) -> bool {
+        let runs = matches!(self.state, State::Running | State::Filling) && matches!(self.crank.drive, Drive::Wheel(_));
+        runs && (self.crank.counts != 0 || !self.crank.wheel.is_at_rest())
+    }
+
     /// Whether pulses are still to come that are added to a path that stands.
     pub const fn owes(&self) -> bool {
-        let runs = matches!(self.state, State::Running | State::Filling | State::Resetting);
+        // a path that a wheel drives may stand as long as it likes
+        let wheel = matches!(self.crank.drive, Drive::Wheel(_)) && self.speed == 0;
+        let runs = matches!(self.state, State::Running | State::Filling | State::Resetting) && !wheel;
         self.superposed.owes() || self.crank.thread.is_busy() || !runs && self.lags()
     }
 

@@ -110,7 +110,8 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         output
     }
 
-    fn drop_rest(&mut self, click: Click) {
+    /// Drops what the wheel has still to go, and tells.
+    pub(super) fn drop_rest(&mut self, click: Click) {
         let dropped = self.crank.wheel.stop(click);
         // what pulls asks for the end: nothing is lost there
         let dropped = if self.crank.pull.is_some() { 0 } else { dropped };

@@ -115,6 +115,49 @@ fn machine_lock_takes_up_no_play() {
 }
 
 #[test]
+fn machine_lock_that_is_asked_for_twice_still_ends() {
+    let mut bench = with_play(Mode::Handwheel);
+    bench.ask(Command::MachineLock(true)).unwrap();
+    bench.turn(Axis::Z, -4, 5);
+    bench.settle();
+    bench.ticks(500);
+    bench.ask(Command::MachineLock(true)).unwrap();
+    bench.ask(Command::MachineLock(false)).unwrap();
+    assert_eq!((bench.at, bench.shown().position), (NONE, NONE));
+    // pulses are made again
+    bench.turn(Axis::Z, -4, 1);
+    bench.settle();
+    assert_ne!(bench.at.z, 0);
+    assert_eq!(off(&bench), NONE);
+}
+
+/// Beside a creeping wheel, whose path stands between two counts: no pulse comes when the motors are off.
+#[test]
+fn motors_go_off_only_when_the_contour_wheel_has_led_where_it_was_asked_to() {
+    let (mut off, mut refused) = (0, 0);
+    for ticks in 0..120 {
+        let mut bench = with_play(Mode::Linked);
+        bench.ask(Command::Scale(Some(Click::DECADES[1]))).unwrap();
+        bench.ask(Command::Contour(line(-3_000, 5_000))).unwrap();
+        bench.turn_contour(1, 1 + ticks % 4);
+        bench.ticks(ticks);
+        match bench.ask(Command::Motors(false)) {
+            Ok(()) => {
+                off += 1;
+                let stands = bench.at;
+                bench.ticks(100);
+                assert_eq!(bench.at, stands, "{ticks} ticks");
+            }
+            Err(refusal) => {
+                refused += 1;
+                assert_eq!(refusal, Refusal::Moving);
+            }
+        }
+    }
+    assert!(off > 0 && refused > 0, "{off} {refused}");
+}
+
+#[test]
 fn motors_go_off_only_when_the_play_is_taken_up() {
     let mut bench = with_play(Mode::Handwheel);
     bench.turn(Axis::Z, -4, 3);

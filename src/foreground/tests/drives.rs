@@ -112,6 +112,24 @@ fn behind_a_retrace_a_limit_ahead_is_seen() {
     bench.keep_limits();
 }
 
+/// Behind a dwell the path waits for the wheel to be turned again; what it had asked for before is told as dropped.
+#[test]
+fn what_the_wheel_asked_for_before_a_dwell_sets_nothing_off_behind_it() {
+    let mut bench = Bench::mode(Mode::Linked);
+    bench.ask(Command::Scale(Some(Click::DECADES[2]))).unwrap();
+    bench.load("G1 X0.5 F100\nG4 P2\nG1 X3\nM2");
+    bench.ask(Command::Start).unwrap();
+    bench.turn_contour(4, 200);
+    bench.settle();
+    assert_eq!(bench.at.x, 400);
+    bench.ticks(3_000);
+    assert_eq!(bench.at.x, 400);
+    assert!(bench.shown().dropped_contour > 0);
+    bench.turn_contour(4, 200);
+    bench.settle();
+    assert!(bench.at.x > 400);
+}
+
 /// Runs a program by the contour wheel for so many ticks, then back until that is refused: and why it is.
 fn led_back(text: &str, ticks: u32) -> (Bench, Option<Refusal>) {
     let mut bench = Bench::mode(Mode::Linked);

@@ -120,6 +120,24 @@ fn the_table_of_modes() {
 }
 
 #[test]
+fn a_guard_that_opens_while_a_start_waits_for_the_wheels_holds_it_before_it_moves() {
+    let mut bench = Bench::with(&[("x.max_accel", "100")]);
+    bench.load("G1 Z20 F600");
+    bench.turn(Axis::X, 40, 20);
+    bench.ask(Command::Start).unwrap();
+    assert!(!bench.foreground.hands_rest());
+    bench.inputs.guard = true;
+    bench.settle();
+    assert_eq!((bench.at.z, bench.shown().state, bench.refused()), (0, State::Holding, Some(Refusal::GuardOpen)));
+    assert!(bench.track.iter().all(|at| at.z == 0));
+    bench.inputs.guard = false;
+    bench.tick();
+    bench.ask(Command::Start).unwrap();
+    bench.settle();
+    assert_eq!((bench.at.z, bench.shown().state), (8_000, State::Ended));
+}
+
+#[test]
 fn a_guard_that_opens_holds_and_nothing_starts_until_it_is_closed() {
     let mut bench = Bench::new();
     bench.load("G1 X20 F600");
