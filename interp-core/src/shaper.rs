@@ -120,8 +120,10 @@ pub struct Shaper {
     early_count: usize,
 }
 
-/// Most events of the next tick that are kept. A curve's end and the joint of two octants owe three steps at most.
-const EARLY: usize = 12;
+/// Most events of the next tick that are kept, two a pulse. Where both axes run at their largest speeds hardly a pause is left
+/// between events, and what has come in a crowd is caught up slowly: three steps that a curve's end or the joint of two octants
+/// owes, and of either axis one that was owed and one each that the program, the hand and the compensation round up.
+const EARLY: usize = 24;
 
 impl Shaper {
     /// A shaper whose pins are all low.

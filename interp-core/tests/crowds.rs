@@ -54,3 +54,28 @@ proptest! {
         prop_assert!(shaper.at_rest());
     }
 }
+
+/// What a path, hands and compensations of both axes bring at once at most, wherever near the tick's end.
+#[test]
+fn eleven_pulses_of_single_axes_have_room_behind_a_tick() {
+    for (clock, event_min) in (11_700..12_000).flat_map(|clock| [(clock, 500), (clock, 5000)]) {
+        let mut shaper = Shaper::new(&machine(event_min));
+        let (mut rises, mut before) = (0, [false; 2]);
+        for tick in 0..3 {
+            let mut events = Vec::new();
+            let mut out = |event: Event| events.push(event);
+            for number in 0..if tick == 1 { 11 } else { 0 } {
+                let (x, z) = if number % 2 == 0 { (1, 0) } else { (0, 1) };
+                shaper.step(clock, x, z, &mut out);
+            }
+            shaper.end_tick(&mut out);
+            assert_eq!(events.iter().map(|event| event.interval()).sum::<u32>(), TICK_CLOCKS, "{clock}");
+            for event in events {
+                let now = [event.levels().step(Axis::X), event.levels().step(Axis::Z)];
+                rises += (0..2).filter(|axis| now[*axis] && !before[*axis]).count();
+                before = now;
+            }
+        }
+        assert_eq!(rises, 11, "{clock}");
+    }
+}

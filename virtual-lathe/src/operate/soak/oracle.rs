@@ -30,9 +30,9 @@ use super::coverage::Coverage;
 use super::track::{Track, part};
 
 /// Pulses that the pins may be off the place shown while an axis moves: one is owed where it would turn the axis round; and
-/// those that the shaper keeps for the next tick, as they have no room in this one. It keeps 12 events at most, two a pulse; one
-/// more would be lost, which shows at rest.
-const IN_FLIGHT: i32 = 7;
+/// those that the shaper keeps for the next tick, as they have no room in this one. It keeps 24 events at most, two a pulse; one
+/// more would be lost, which shows at rest, and in the tick's length.
+const IN_FLIGHT: i32 = 13;
 
 /// Ticks without a pulse after which it stands: what is owed waits 16.
 const STANDS: u32 = 20;
