@@ -19,7 +19,7 @@
 pub mod curves;
 pub mod end_test;
 pub mod nurbs;
-#[cfg_attr(not(feature = "methods"), expect(dead_code, reason = "chains alone ask for radii"))]
+#[cfg_attr(not(feature = "methods"), allow(dead_code, reason = "chains alone ask for radii"))]
 pub(crate) mod quartic;
 pub mod spline;
 
