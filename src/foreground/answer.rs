@@ -26,7 +26,7 @@ macro_rules! numbers {
             }
         }
 
-        /// The refusal of a number; `None` for [`OBEYED`].
+        /// The refusal of a number; `None` for 0, a request that was obeyed.
         pub fn refusal(number: u32) -> Option<Refusal> {
             match number {
                 // the usual case

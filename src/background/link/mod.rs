@@ -11,7 +11,7 @@
 //! - `$`, `$$`, `$G`, `$I`, `$X`: help, parameters, what is modal, version, unlock.
 //! - `$name=value` sets a parameter; also `$100 $102 $110 $112 $120 $122`, as Grbl numbers them. `$format=nc1973` and
 //!   `$format=gcode` choose how programs are read. Only while idle.
-//! - `$mode=handwheel` and the like are the operator's [requests](requests).
+//! - `$mode=handwheel` and the like are the operator's requests.
 //! - Anything else is a line of a program. M2, M30 or a closing `%` ends the program; the next begins where the tool is.
 //!
 //! # Cycles

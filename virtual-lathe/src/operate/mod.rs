@@ -184,19 +184,28 @@ fn prepare(job: &Job, mut events: Vec<Event>) -> Result<(Settings, Machine, Vec<
         }
     }
     settings = first;
-    errors.extend(unknown_keys(&settings, &machine, &events)?);
-    if !errors.is_empty() {
-        errors.sort_by_key(|error| error.line);
-        return Err(Unrun::Script(errors));
-    }
-    events.retain(|event| event.tick > 0 || !matches!(event.what, What::Set(..)));
     let folder = job.scenario.parent().unwrap_or(Path::new(""));
     for event in &mut events {
         if let What::Load(file) = &mut event.what {
             *file = folder.join(&*file);
         }
     }
+    errors.extend(events.iter().filter_map(unreadable));
+    errors.extend(unknown_keys(&settings, &machine, &events)?);
+    if !errors.is_empty() {
+        errors.sort_by_key(|error| error.line);
+        return Err(Unrun::Script(errors));
+    }
+    events.retain(|event| event.tick > 0 || !matches!(event.what, What::Set(..)));
     Ok((settings, machine, events))
+}
+
+/// A program that can't be read.
+fn unreadable(event: &Event) -> Option<ScriptError> {
+    let What::Load(file) = &event.what else { return None };
+    let error = std::fs::read(file).err()?;
+    let remedy = "the name is relative to the script's folder".to_owned();
+    Some(error_of(event, format!("{}: {error}", file.display()), remedy))
 }
 
 /// Expectations of what the state does not have.
