@@ -224,6 +224,8 @@ mod tests {
             hand.stop();
             while !hand.is_at_rest() {
                 made += hand.tick(Bounds { accel: SHARE, ..BOUNDS }, ENDLESS, SHARE, pulse);
+                // it rests once what it dropped is told
+                let _ = hand.end_stop(click);
             }
             prop_assert!(made <= stands && stands <= pulses);
         }
