@@ -150,9 +150,10 @@ impl<'q> Foreground<'q> {
     }
 
     /// Takes the readings of a tick, to be called before it. Counts of wheels that no tick has taken add up.
-    pub const fn read(&mut self, inputs: &Inputs) {
+    pub fn read(&mut self, inputs: &Inputs) {
         let before = self.desk.inputs;
-        self.attended = true;
+        // the spindle is read in every tick, whoever attends; what lasts is seen by `Desk::acts`
+        self.attended |= Inputs { spindle: None, ..*inputs } != Inputs::NONE;
         self.desk.inputs = *inputs;
         let now = &mut self.desk.inputs;
         now.wheels.x = now.wheels.x.saturating_add(before.wheels.x);

@@ -18,6 +18,9 @@ impl Foreground<'_> {
     /// Before the channel's tick.
     #[inline]
     pub(super) fn operate(&mut self) {
+        if let Some(reading) = self.desk.inputs.spindle.take() {
+            self.channel.read(&drive::Inputs { spindle: Some(reading), wheel: 0 });
+        }
         if self.attended {
             self.attend();
         }
@@ -26,9 +29,6 @@ impl Foreground<'_> {
     /// Readings, requests, and what either has begun.
     #[inline(never)]
     fn attend(&mut self) {
-        if let Some(reading) = self.desk.inputs.spindle.take() {
-            self.channel.read(&drive::Inputs { spindle: Some(reading), wheel: 0 });
-        }
         if self.desk.inputs.scales != Inputs::NONE.scales {
             self.close_loop();
         }
