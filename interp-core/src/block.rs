@@ -223,6 +223,8 @@ pub enum ArcRefusal {
     /// Its radius is below three pulses of the coarser axis, and the pulse sizes differ more than fourfold: there is
     /// no lattice point near most of it.
     TooSmall,
+    /// It turns by more than half a turn about less than a pulse: nothing would move.
+    NoPulse,
 }
 
 /// What became of a programmed curve.
@@ -297,26 +299,33 @@ impl Builder {
             built.refused = Some(ArcRefusal::TooSmall);
             return built;
         }
-        match path {
-            Path::Line => self.line(end, pace, &mut built),
-            Path::Arc { centre, sense } => match self.split(end, centre, sense) {
-                Split::Halves(middle) => {
-                    self.arc(middle, centre, sense, Reach::Short, pace, &mut built);
-                    self.arc(end, centre, sense, Reach::Short, pace, &mut built);
-                    if let [first, second] = built.motions.as_mut_slice() {
-                        first.continues = true;
-                        // one speed for the one curve that was programmed
-                        let limit = first.limit.min(second.limit);
-                        for half in [first, second] {
-                            if half.limit != limit {
-                                (half.limit, half.source) = (limit, half.source.shared());
-                            }
+        let Path::Arc { centre, sense } = path else {
+            self.line(end, pace, &mut built);
+            return built;
+        };
+        let (from, split) = (self.at, self.split(end, centre, sense));
+        match split {
+            Split::Halves(middle) => {
+                self.arc(middle, centre, sense, Reach::Short, pace, &mut built);
+                self.arc(end, centre, sense, Reach::Short, pace, &mut built);
+                if let [first, second] = built.motions.as_mut_slice() {
+                    first.continues = true;
+                    // one speed for the one curve that was programmed
+                    let limit = first.limit.min(second.limit);
+                    for half in [first, second] {
+                        if half.limit != limit {
+                            (half.limit, half.source) = (limit, half.source.shared());
                         }
                     }
                 }
-                Split::Whole(reach) => self.arc(end, centre, sense, reach, pace, &mut built),
-                Split::OutOfRange => built.refused = Some(ArcRefusal::OutOfRange),
-            },
+            }
+            Split::Whole(reach) => self.arc(end, centre, sense, reach, pace, &mut built),
+            Split::OutOfRange => built.refused = Some(ArcRefusal::OutOfRange),
+        }
+        // a short one may round to nothing, as a line may; who programs a turn wants to see one
+        if split != Split::Whole(Reach::Short) && built.motions.is_empty() && built.refused.is_none() {
+            built.refused = Some(ArcRefusal::NoPulse);
+            self.at = from;
         }
         built
     }

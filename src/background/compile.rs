@@ -102,6 +102,7 @@ impl Finding {
                 f.write_str("split the arc, or move it nearer to the zero point")
             }
             Self::Arc { why: ArcRefusal::TooSmall, .. } => f.write_str("write a line in its place"),
+            Self::Arc { why: ArcRefusal::NoPulse, .. } => f.write_str("correct I and K, or leave the arc out"),
         }
     }
 }
@@ -130,6 +131,9 @@ impl fmt::Display for Finding {
             Self::Arc { why: ArcRefusal::TooSmall, .. } => f.write_str(
                 "the arc's radius is below three pulses of the coarser axis, too small for pulses so unequal",
             ),
+            Self::Arc { why: ArcRefusal::NoPulse, .. } => {
+                f.write_str("an arc of more than half a turn about less than a pulse: nothing would move")
+            }
         }
     }
 }

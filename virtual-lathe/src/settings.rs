@@ -5,7 +5,7 @@ use std::path::Path;
 use figures::{FigureError, Figures};
 use handcnc::background::parameters::{ParameterError, Parameters};
 use interp_core::config::Machine;
-use interp_core::units::PulseSize;
+use interp_core::units::{Axis, PulseSize};
 use machine::{Axes, Control, table};
 
 use crate::machine_file;
@@ -97,8 +97,27 @@ impl Settings {
     /// The same over these settings, in the place of the defaults.
     ///
     /// # Errors
-    /// [`Refusal`], with all that is wrong and not only the first of it.
+    /// [`Refusal`], with all that is wrong and not only the first of it; a table in force that nobody gave is wrong.
     pub fn read_fitted_over(
+        self,
+        file: Option<&Path>,
+        set: &[(String, String)],
+        pitch: Option<&Path>,
+    ) -> Result<(Self, Machine), Refusal> {
+        let (settings, machine) = self.read_with_tables(file, set, pitch)?;
+        let missing = |axis: Axis, table: bool| {
+            let on = settings.parameters.compensation(axis).pitch;
+            (on && !table).then(|| {
+                let name = axis.letter();
+                format!("error: {name}.pitch_table = true, but there is no table for {name}: give one with --pitch-table FILE")
+            })
+        };
+        let tables = [(Axis::X, settings.pitch.x.is_some()), (Axis::Z, settings.pitch.z.is_some())];
+        let errors: Vec<String> = tables.into_iter().filter_map(|(axis, table)| missing(axis, table)).collect();
+        if errors.is_empty() { Ok((settings, machine)) } else { Err(Refusal::Wrong(errors)) }
+    }
+
+    fn read_with_tables(
         self,
         file: Option<&Path>,
         set: &[(String, String)],

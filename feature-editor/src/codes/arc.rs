@@ -82,9 +82,12 @@ pub(crate) fn check_radii(start: u128, end: u128, tolerance_nm: i64) -> Result<(
     let (start, end) = (distance(start), distance(end));
     if start.nm().unsigned_abs() > RADIUS_LIMIT_NM {
         Err(ArcError::TooLarge)
+    } else if start.nm() == 0 {
+        // before the end is looked at: no end would fit
+        Err(ArcError::Zero)
     } else if start.nm().abs_diff(end.nm()) > tolerance_nm.unsigned_abs() {
         Err(ArcError::RadiiDiffer { start, end })
-    } else if start.nm() == 0 || end.nm() == 0 {
+    } else if end.nm() == 0 {
         Err(ArcError::Zero)
     } else {
         Ok(())

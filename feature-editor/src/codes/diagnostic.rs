@@ -81,6 +81,8 @@ pub enum DiagnosticKind {
     SpindleSpeed(Word),
     /// F word that is zero, less, or rounds to zero.
     FeedNotPositive(Word),
+    /// F word below [`Feedrate::SLOWEST`].
+    FeedTooLow(Word),
     /// F word above the fastest feed of both axes.
     FeedTooHigh {
         /// The word.

@@ -231,6 +231,9 @@ fn feed(placed: Placed, settings: &Settings, state: &mut State, report: &mut Rep
         None | Some(Err(_) | Ok(0)) => report.tell(placed.span, DiagnosticKind::FeedNotPositive(word)),
         Some(Ok(nm_per_min)) => match Feedrate::from_nm_per_min(nm_per_min) {
             Some(feed) if feed <= limit_x.max(limit_z) => state.feed = Some(Feed::PerMinute(feed)),
+            None if nm_per_min < Feedrate::SLOWEST.nm_per_min() => {
+                report.tell(placed.span, DiagnosticKind::FeedTooLow(word));
+            }
             _ => report.tell(placed.span, too_high),
         },
     }

@@ -73,6 +73,9 @@ impl Display for DiagnosticKind {
             K::ToolNumber(word) => write!(f, "{word} is no tool number"),
             K::SpindleSpeed(word) => write!(f, "{word} is no spindle speed from 0 to 100000"),
             K::FeedNotPositive(word) => write!(f, "{word} is no feed above zero"),
+            K::FeedTooLow(word) => {
+                write!(f, "{word} is below the slowest feed, {} mm/min", PerMinute(Feedrate::SLOWEST))
+            }
             K::FeedTooHigh { word, limit_x, limit_z } => {
                 let (x, z) = (PerMinute(limit_x), PerMinute(limit_z));
                 write!(f, "{word} is above the fastest feed of both axes: X {x}, Z {z} mm/min")
@@ -197,6 +200,9 @@ impl Display for Remedy {
             K::ToolNumber(_) => "write T with the tool, or with two digits each for tool and offset (T0101)",
             K::SpindleSpeed(_) => "write S in turns a minute, and the direction with M3 or M4",
             K::FeedNotPositive(_) => "write F above zero, in mm (G20: inch) a minute",
+            K::FeedTooLow(_) => {
+                return write!(f, "write a feed of {} mm/min or more", PerMinute(Feedrate::SLOWEST));
+            }
             K::FeedTooHigh { limit_x, limit_z, .. } => {
                 return write!(f, "write a feed up to {} mm/min", PerMinute(limit_x.max(limit_z)));
             }
@@ -236,7 +242,7 @@ impl Display for Remedy {
             K::CentreMissing => "write I and K (from the start to the centre), or R",
             K::CentreAndRadius { .. } => "write I and K, or R, not both",
             K::FullCircleByRadius(_) => "write I and K instead of R",
-            K::RadiusZero => "write a radius above zero",
+            K::RadiusZero => "write R, or I and K with the way from the start to the centre, not all zero",
             K::RadiusTooLarge => "write a straight line, or a radius up to 4200 mm",
             K::RadiiDiffer { .. } => "correct the end or the centre until both radii agree",
             K::RadiusTooSmall { half_chord, .. } => {

@@ -147,6 +147,7 @@ const fn of_text(kind: &DiagnosticKind) -> u8 {
         | K::FeedCode(_)
         | K::ToleranceTooLarge(_)
         | K::ToleranceMissing(_)
+        | K::FeedTooLow(_)
         | K::ThreadStart(_)
         | K::ThreadStartSmall(_) => 39,
         // above the largest feed

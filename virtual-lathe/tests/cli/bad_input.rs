@@ -1,6 +1,6 @@
 //! Programs that are refused: each by a message that names place and cause.
 
-use super::bench::{Bench, refused};
+use super::bench::{Bench, refused, refused_setting};
 
 #[test]
 fn an_empty_file_is_refused() {
@@ -73,6 +73,36 @@ fn an_arc_whose_radii_differ_is_refused() {
 #[test]
 fn a_full_circle_by_radius_is_refused() {
     refused("G2 X0 Z0 R5 F100\nM30\n", &["p.nc:1:10", "R5", "write I and K instead of R"]);
+}
+
+#[test]
+fn a_circle_about_less_than_a_pulse_is_refused() {
+    let why = ["p.nc:1:1", "about less than a pulse: nothing would move", "correct I and K"];
+    refused("G2 X0 Z0 I0.00249 K0 F10\nM30\n", &why);
+    // and three quarters of one, whose ends round to one point
+    refused("G2 X-0.0005 Z0.0005 I0 K0.0005 F10\nM30\n", &why);
+    // a pulse is walked: to its four corners and back
+    let bench = Bench::with("G2 X0 Z0 I0.0025 K0 F10\nM30\n");
+    assert!(bench.turn(&["p.nc"]).out.contains("events"));
+}
+
+#[test]
+fn an_arc_about_its_start_is_refused() {
+    refused("G2 X1 Z1 I0 K0 F10\nM30\n", &["p.nc:1:10", "arc with radius zero", "write R, or I and K"]);
+}
+
+#[test]
+fn a_pitch_table_that_nobody_gave_is_refused() {
+    let what = "z.pitch_table = true, but there is no table for z: give one with --pitch-table";
+    refused_setting("z.pitch_table=true", &[what]);
+}
+
+#[test]
+fn a_feed_below_the_slowest_is_refused() {
+    refused(
+        "G1 X1 F0.009\nM30\n",
+        &["p.nc:1:7", "F0.009 is below the slowest feed, 0.01 mm/min", "0.01 mm/min or more"],
+    );
 }
 
 #[test]

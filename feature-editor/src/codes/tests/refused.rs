@@ -44,6 +44,8 @@ fn feed() {
     for (text, length) in [("F0", 2), ("F-1", 3), ("F0.0000001", 10)] {
         assert_eq!(one(text), (1, length, K::FeedNotPositive(word(text))));
     }
+    assert_eq!(one("F0.009"), (1, 6, K::FeedTooLow(word("F0.009"))));
+    assert_eq!(actions("F0.01"), []);
     let limits = |text| K::FeedTooHigh { word: word(text), limit_x: per_minute(2_000), limit_z: per_minute(5_000) };
     assert_eq!(one("F5000.1"), (1, 7, limits("F5000.1")));
     assert_eq!(one("F999999999999999999"), (1, 19, limits("F999999999999999999")));
@@ -104,6 +106,7 @@ fn arcs() {
     assert_eq!(one("G2 Z0 F5 R1"), (10, 2, K::FullCircleByRadius(word("R1"))));
     assert_eq!(one("G2 Z1 F5 R0"), (10, 2, K::RadiusZero));
     assert_eq!(one("G2 Z0 F5 I0"), (10, 2, K::RadiusZero));
+    assert_eq!(one("G2 Z1 F5 I0 K0"), (10, 2, K::RadiusZero));
     assert_eq!(one("G2 Z1 F5 R4200.1"), (10, 7, K::RadiusTooLarge));
     assert_eq!(one("G2 Z1 F5 I4000 K4000"), (10, 5, K::RadiusTooLarge));
     let (start, end) = (Distance::from_nm(5_000_000), Distance::from_nm(5_011_000));
