@@ -1,10 +1,12 @@
 //! What was going on, moment by moment, in bounded memory: what the picture of a scenario is drawn of.
 
+use handcnc::foreground::Command;
 use handcnc::foreground::mode::Mode;
 use handcnc::foreground::shown::Shown;
 use interp_core::units::Lattice;
 
-use super::event::{What, Wheel};
+use super::event::{Event, What, Wheel};
+use super::script::without_comment;
 
 /// Most moments: beyond it every second one is left out.
 const MOST: usize = 1 << 14;
@@ -29,6 +31,8 @@ pub struct Moment {
 pub enum Mark {
     /// A wheel is turned: from this tick to that, so many detents.
     Turn(Wheel, u64, u64, i32),
+    /// Something is asked for, in the script's words.
+    Asked(u64, String),
     /// Something is refused.
     Refusal(u64, String),
     /// An alarm comes.
@@ -65,10 +69,17 @@ impl Chronicle {
         self.moments.push(Moment { tick, mode, programmed, position, power });
     }
 
-    /// Hands have done something.
-    pub(super) fn turned(&mut self, tick: u64, what: &What) {
-        if let What::Turn(wheel, detents, over_ns) = *what {
-            self.marks.push(Mark::Turn(wheel, tick, tick + over_ns.div_ceil(1_000_000), detents));
+    /// An event comes: a wheel's turn, or what else the operator or the machine does. Modes are seen by themselves.
+    pub(super) fn happened(&mut self, tick: u64, event: &Event) {
+        match event.what {
+            What::Turn(wheel, detents, over_ns) => {
+                self.marks.push(Mark::Turn(wheel, tick, tick + over_ns.div_ceil(1_000_000), detents));
+            }
+            What::Command(Command::Mode(_)) | What::Expect(_) | What::End => {}
+            _ => {
+                let words = without_comment(&event.text).split_whitespace().skip(1);
+                self.marks.push(Mark::Asked(tick, words.collect::<Vec<_>>().join(" ")));
+            }
         }
     }
 

@@ -170,6 +170,7 @@ impl Control {
         self.switch_on(&mut foreground);
         loop {
             while let Some(event) = self.events.next_if(|event| event.tick <= self.tick) {
+                self.chronicle.happened(self.tick, &event);
                 let next = self.event(&event, &mut foreground)?;
                 self.shown = foreground.shown();
                 match next {
@@ -300,6 +301,7 @@ impl Control {
     fn dark(&mut self) -> io::Result<Next> {
         loop {
             while let Some(event) = self.events.next_if(|event| event.tick <= self.tick) {
+                self.chronicle.happened(self.tick, &event);
                 match self.event_in_the_dark(&event) {
                     Next::Tick | Next::Fail => {}
                     Next::On => return Ok(Next::On),

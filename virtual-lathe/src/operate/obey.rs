@@ -63,7 +63,6 @@ impl Control {
             What::Wobble(percent, hz) => bench.spindle.wobble(percent / 100.0, hz),
             _ => return false,
         }
-        self.chronicle.turned(self.tick, what);
         true
     }
 

@@ -178,7 +178,7 @@ fn number_of(text: &str) -> u32 {
 }
 
 /// A line up to a `#` that begins it or stands behind a blank.
-fn without_comment(text: &str) -> &str {
+pub(super) fn without_comment(text: &str) -> &str {
     let begins = |(at, _): &(usize, &str)| {
         text.get(..*at).is_none_or(|before| before.is_empty() || before.ends_with(char::is_whitespace))
     };

@@ -43,7 +43,7 @@ pub(super) fn sheet(title: &str, facts: String, chronicle: &Chronicle, machine: 
             Some(operation::Mark { time: seconds(*tick), name: name.clone(), is_alarm: false })
         }
         Mark::Alarm(tick, name) => Some(operation::Mark { time: seconds(*tick), name: name.clone(), is_alarm: true }),
-        Mark::Turn(..) => None,
+        Mark::Turn(..) | Mark::Asked(..) => None,
     });
     Operation {
         title: title.into(),
@@ -51,8 +51,24 @@ pub(super) fn sheet(title: &str, facts: String, chronicle: &Chronicle, machine: 
         moments,
         modes,
         hands: hands.into_iter().filter(|(_, turns)| !turns.is_empty()).collect(),
+        requests: requests(chronicle),
         marks: marks.collect(),
     }
+}
+
+/// What was asked for when; what came in one tick stands together.
+fn requests(chronicle: &Chronicle) -> Vec<operation::Request> {
+    let mut requests: Vec<operation::Request> = Vec::new();
+    let mut last = None;
+    for mark in chronicle.marks() {
+        let Mark::Asked(tick, words) = mark else { continue };
+        match requests.last_mut() {
+            Some(request) if last == Some(tick) => request.words.push(words.clone()),
+            _ => requests.push(operation::Request { time: seconds(*tick), words: vec![words.clone()] }),
+        }
+        last = Some(tick);
+    }
+    requests
 }
 
 /// When a wheel is turned.

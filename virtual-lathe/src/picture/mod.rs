@@ -21,6 +21,7 @@ pub mod operation;
 mod page;
 mod pen;
 mod raster;
+mod requests;
 mod room;
 mod section;
 mod text;

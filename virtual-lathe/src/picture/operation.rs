@@ -4,6 +4,8 @@
 
 use crate::picture::number::{Ticks, brief};
 use crate::picture::pen::{Anchor, GREY, INK, Pen, Point, Stroke};
+pub use crate::picture::requests::Request;
+use crate::picture::requests::{self, Flag};
 use crate::picture::text;
 use crate::picture::thin::thinned;
 use crate::picture::view::Rect;
@@ -63,6 +65,8 @@ pub struct Operation {
     pub modes: Vec<Stretch>,
     /// What hands do, a row each: its name and when.
     pub hands: Vec<(String, Vec<Stretch>)>,
+    /// What else was asked for, in the order of time.
+    pub requests: Vec<Request>,
     /// Refusals and alarms.
     pub marks: Vec<Mark>,
 }
@@ -95,8 +99,17 @@ const TOOL: Stroke = Stroke::solid(INK, 1.5);
 const GRID: Stroke = Stroke::solid("#e6e6e6", 0.8);
 const ALARM: &str = "#c0392b";
 const REFUSAL: &str = "#b8860b";
-/// Of the modes, one after the other.
-const BANDS: [&str; 4] = ["#e8eef5", "#f3ecdf", "#e6f0e6", "#f2e6ec"];
+/// Of the modes: each has the same in every picture.
+const BANDS: [(&str, &str); 8] = [
+    ("handwheel", "#e6f0e6"),
+    ("power", "#e3eef0"),
+    ("linked", "#e8eef5"),
+    ("auto", "#f3ecdf"),
+    ("mdi", "#efe9f4"),
+    ("home", "#f2e6ec"),
+    ("retrace", "#f6efc9"),
+    ("no power", "#d9d9d9"),
+];
 
 impl Operation {
     /// The sheet as an SVG document `width_px` wide.
@@ -108,7 +121,9 @@ impl Operation {
         let rows = count(self.hands.len());
         let told = self.legend(units - 2.0 * MARGIN - 12.0);
         let strips = MARGIN + TITLE + HEAD + path_height + FOOT;
-        let hands = strips + ROW + 12.0 + 2.0 * (STRIP + HEAD);
+        let flags = requests::flags(&self.requests, self.span(), frame_width);
+        let lane = requests::height(&flags);
+        let hands = strips + ROW + 12.0 + lane + 2.0 * (STRIP + HEAD);
         let legend = hands + rows * (ROW + 4.0) + FOOT + 6.0;
         let height = legend + count(told.len()) * LEGEND + MARGIN;
         let mut pen = Pen::sheet(units, height, width_px.max(1));
@@ -119,18 +134,22 @@ impl Operation {
         let at = |y: f64, height: f64| Rect { x: MARGIN + GUTTER, y, width: frame_width, height };
         self.path(&mut pen, at(MARGIN + TITLE + HEAD, path_height), low, high, scale);
         let mut y = strips;
+        let mut frames = vec![at(y, ROW)];
         self.bands(&mut pen, at(y, ROW));
-        y += ROW + 12.0 + HEAD / 2.0;
+        Self::asked(&mut pen, at(y + ROW, lane), &flags);
+        y += ROW + 12.0 + lane + HEAD / 2.0;
         for (name, part) in [("X, mm (radius)", 1), ("Z, mm", 0)] {
             self.strip(&mut pen, at(y, STRIP), name, part);
+            frames.push(at(y, STRIP));
             y += STRIP + HEAD;
         }
         y -= HEAD / 2.0;
         for (row, (name, turns)) in self.hands.iter().enumerate() {
             let frame = at(y + count(row) * (ROW + 4.0), ROW);
             self.row(&mut pen, frame, name, turns);
+            frames.push(frame);
         }
-        self.time(&mut pen, at(y, rows * (ROW + 4.0)), strips);
+        self.time(&mut pen, at(y, rows * (ROW + 4.0)), &frames);
         for (number, line) in told.iter().enumerate() {
             let at = [MARGIN + 6.0, legend + (count(number) + 0.7) * LEGEND];
             pen.text("legend", at, TEXT, Anchor::Start, INK, line);
@@ -198,6 +217,9 @@ impl Operation {
             // several at one place stand side by side
             while taken.iter().any(|other| (other[0] - place[0]).abs() < 15.0 && (other[1] - place[1]).abs() < 15.0) {
                 place[0] += 16.0;
+                if place[0] > frame.right() - 9.0 {
+                    place = [at(moment.moved)[0].min(frame.right() - 9.0), place[1] - 16.0];
+                }
             }
             taken.push(place);
             balloon(pen, place, number + 1, mark.is_alarm);
@@ -213,7 +235,9 @@ impl Operation {
         }
         pen.text("axis", [frame.x, frame.y - 9.0], TEXT, Anchor::Start, INK, "X in mm (radius), over Z in mm");
         let mut right = frame.right();
-        for (name, stroke) in [("tool", TOOL), ("program", PROGRAM)] {
+        let lines = [("tool", TOOL), ("program", PROGRAM)];
+        let shown = if self.moments.iter().any(Moment::is_led_off) { 2 } else { 1 };
+        for (name, stroke) in lines.into_iter().take(shown) {
             pen.text("legend", [right, frame.y - 9.0], TEXT, Anchor::End, INK, name);
             right -= text::width(name, TEXT) + 6.0;
             pen.open("sample", stroke);
@@ -255,17 +279,20 @@ impl Operation {
     }
 
     fn bands(&self, pen: &mut Pen, frame: Rect) {
-        let mut known: Vec<&str> = Vec::new();
         for band in &self.modes {
-            let colour = known.iter().position(|name| *name == band.name).unwrap_or_else(|| {
-                known.push(&band.name);
-                known.len() - 1
-            });
-            let fill = BANDS.get(colour % BANDS.len()).copied().unwrap_or_default();
+            let fill = BANDS.iter().find(|(name, _)| *name == band.name).map_or("#ffffff", |(_, colour)| colour);
             self.boxed(pen, frame, band, fill, 0.0);
         }
         frame_of(pen, frame);
         pen.text("axis", [frame.x - 7.0, frame.y + 15.0], TEXT, Anchor::End, INK, "mode");
+    }
+
+    /// What was asked for, under the modes.
+    fn asked(pen: &mut Pen, lane: Rect, flags: &[Flag]) {
+        if lane.height > 0.0 {
+            requests::draw(pen, lane, flags);
+            pen.text("axis", [lane.x - 7.0, lane.y + requests::ROW], TEXT, Anchor::End, INK, "asked");
+        }
     }
 
     /// A stretch of a row with its name, where there is room for it inside, or in so many units behind it.
@@ -325,8 +352,9 @@ impl Operation {
         pen.text("axis", [frame.x, frame.y - 6.0], TEXT, Anchor::Start, INK, name);
     }
 
-    /// The labels of time, and the marks over all strips from `top` on.
-    fn time(&self, pen: &mut Pen, last: Rect, top: f64) {
+    /// The labels of time, and the marks over all frames.
+    fn time(&self, pen: &mut Pen, last: Rect, frames: &[Rect]) {
+        let top = frames.first().map_or(last.y, |frame| frame.y);
         let span = self.span();
         let x = |time: f64| last.x + time / span * last.width;
         let along = Ticks::at_least(STEPS[0] * span / last.width);
@@ -339,7 +367,9 @@ impl Operation {
         for (number, mark) in self.marks.iter().enumerate().take(TOLD) {
             let place = x(mark.time);
             pen.open("mark", Stroke { colour: colour(mark.is_alarm), width: 1.1, dashes: "3 3" });
-            pen.line([place, top], [place, last.bottom()]);
+            for frame in frames {
+                pen.line([place, frame.y], [place, frame.bottom()]);
+            }
             pen.close();
             let shown = place.max(right_of + 16.0);
             right_of = shown;
