@@ -94,10 +94,11 @@ proptest! {
         let played = run(&sample, &machine, Pace::Feed(feed(mm_per_min)));
         let (bound, inner) = sample.bounds();
         let (off, between) = played.farthest(&machine, &sample, inner);
-        prop_assert!(off <= bound, "{sample:?}: {off} pulses off");
-        prop_assert!(between <= inner, "{sample:?}: {between} pulses off between the ends");
+        let case = || format!("{sample:?} in pulses of {x:?}, {z:?} at {mm_per_min} mm/min, {accel} mm/s2");
+        prop_assert!(off <= bound, "{}: {off} pulses off", case());
+        prop_assert!(between <= inner, "{}: {between} pulses off between the ends", case());
         if let Some(fault) = played.limits(&machine) {
-            prop_assert!(false, "{sample:?}: {fault}");
+            prop_assert!(false, "{}: {fault}", case());
         }
     }
 
@@ -114,7 +115,8 @@ proptest! {
             let (behind, ahead) = played.feed_error(&machine, &sample, feed);
             // a step is so far from its place at both ends of a window
             let most = 4.0;
-            prop_assert!(behind >= -most && ahead <= most, "{sample:?}: {behind} to {ahead} pulses off in a window");
+            prop_assert!(behind >= -most && ahead <= most,
+                "{sample:?} in pulses of {x:?}, {z:?} at {mm_per_min} mm/min: {behind} to {ahead} pulses off in a window");
         }
     }
 }
