@@ -40,7 +40,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         self.crank.along.at
     }
 
-    /// Sets how far the wheel may lead the path, to be called while that stands: lengths like those of [`along`](Self::along), with
+    /// Sets how far the wheel may lead the path, to be called while that stands or with a wider range: lengths like those of [`along`](Self::along), with
     /// the present one between them. Another drive, and another path, have no ends.
     pub const fn set_ends(&mut self, least: i64, most: i64) {
         self.crank.along.least = least;
