@@ -72,8 +72,11 @@ impl Foreground<'_> {
             return false;
         }
         let _ = self.channel.set_drive(drive);
-        let rapid = self.desk.own.motions().map(|motion| motion.limit).min().unwrap_or(0);
-        let length = self.desk.own.motions().fold(0_u64, |length, motion| length.saturating_add(motion.length));
+        let (mut rapid, mut length) = (Speed::MAX, 0_u64);
+        for motion in self.desk.own.motions() {
+            rapid = rapid.min(motion.limit);
+            length = length.saturating_add(motion.length);
+        }
         let length = length.cast_signed();
         self.desk.way = Some(Way { from, rapid, length, least: 0, most: length, began: None });
         self.find_shoulders();

@@ -41,19 +41,14 @@ const BACK: u64 = 33_424;
 const FINE: u64 = 1 << 12;
 
 impl Shoulder {
-    /// How far a place, 16 fraction bits, lies beyond.
-    fn beyond(&self, place: (i64, i64)) -> i64 {
-        let part = match self.axis {
-            Axis::X => place.0,
-            Axis::Z => place.1,
-        };
-        let off = part.wrapping_sub(i64::from(self.at) << 16);
-        if self.plus { off } else { off.wrapping_neg() }
+    /// How far a coordinate of its axis lies beyond.
+    const fn beyond(&self, at: i64, shoulder: i64) -> i64 {
+        if self.plus { at.wrapping_sub(shoulder) } else { shoulder.wrapping_sub(at) }
     }
 
-    /// The same for a lattice point.
-    fn pulses_beyond(&self, place: (i32, i32)) -> i64 {
-        self.beyond((i64::from(place.0) << 16, i64::from(place.1) << 16)) >> 16
+    /// How far an arc is beyond at a length, pulses with 16 fraction bits.
+    fn of_round(&self, round: &Round, length: u64) -> i64 {
+        self.beyond(round.coordinate(self.axis, round.quarters(length)), i64::from(self.at) << 16)
     }
 }
 
@@ -105,14 +100,13 @@ impl Motion {
     }
 
     fn on_line(&self, line: Line, back: bool, shoulder: Shoulder) -> Option<u64> {
-        let end = line.end();
-        if shoulder.pulses_beyond(if back { (0, 0) } else { end }) <= 0 {
+        let along = match shoulder.axis {
+            Axis::X => line.end().0,
+            Axis::Z => line.end().1,
+        };
+        if shoulder.beyond(if back { 0 } else { i64::from(along) }, i64::from(shoulder.at)) <= 0 {
             return None;
         }
-        let along = match shoulder.axis {
-            Axis::X => end.0,
-            Axis::Z => end.1,
-        };
         let steps = i128::from(line.steps());
         // the line of the major axis nearest to the coordinate
         let (at, along) =
@@ -151,11 +145,11 @@ impl Shoulder {
 fn on_arc(arc: &Arc, from: u64, back: bool, shoulder: Shoulder) -> Option<u64> {
     let round = Round::new(arc);
     let end = if back { 0 } else { round.length };
-    let mut quarter = round.turned(from).0;
+    let mut quarter = round.quarters(from).0;
     // the last place known that is not beyond
     let mut inside = from;
     // on its coordinate the major axis may be nearly a pulse beyond it
-    let mut before = shoulder.beyond(round.point(from));
+    let mut before = shoulder.of_round(&round, from);
     for _ in 0..QUARTERS {
         if !back {
             quarter = quarter.wrapping_add(1);
@@ -166,7 +160,7 @@ fn on_arc(arc: &Arc, from: u64, back: bool, shoulder: Shoulder) -> Option<u64> {
         }
         let border = to_u64(i128::from(arc.radius()).wrapping_mul(i128::from(turned.max(0))) >> 30);
         let at = if back { border.min(inside) } else { border.max(inside).min(end) };
-        let beyond = shoulder.beyond(round.point(at));
+        let beyond = shoulder.of_round(&round, at);
         if beyond > TOUCHES && beyond > before {
             return Some(last_before(&round, arc, (inside, at), shoulder, back));
         }
@@ -187,25 +181,23 @@ const QUARTERS: u8 = 7;
 /// The place before the one, between two lengths, where a point on an arc goes beyond.
 fn last_before(round: &Round, arc: &Arc, between: (u64, u64), shoulder: Shoulder, back: bool) -> u64 {
     let (mut inside, mut beyond) = between;
-    if shoulder.beyond(round.point(inside)) > 0 {
+    if shoulder.of_round(round, inside) > 0 {
         // it stands on the coordinate already
         return inside;
     }
     while inside.abs_diff(beyond) > FINE {
         let middle = inside.wrapping_add(beyond) >> 1;
-        if shoulder.beyond(round.point(middle)) > 0 {
+        if shoulder.of_round(round, middle) > 0 {
             beyond = middle;
         } else {
             inside = middle;
         }
     }
-    let (_, sine, cosine) = round.turned(inside);
+    let (quarters, sine, cosine) = round.turned(inside);
+    let (along, out) = if quarters & 1 == 0 { (cosine, sine) } else { (sine, cosine) };
     let [first, second] = round.radius;
-    let (even, odd) =
-        ((round.part(cosine, first), round.part(sine, second)), (round.part(sine, first), round.part(cosine, second)));
-    let rates = if round.turned(inside).0 & 1 == 0 { even } else { odd };
     // pulses of the major axis a radian
-    let rate = rates.0.abs().max(rates.1.abs()).max(1).unsigned_abs();
+    let rate = round.part(along, first).max(round.part(out, second)).max(1).unsigned_abs();
     let part = if back { BACK } else { FORWARD };
     let half = arc.radius().saturating_mul(part).checked_div(rate).unwrap_or(0);
     inside.saturating_add(half)

@@ -251,7 +251,8 @@ impl Round {
 
     /// The lattice point nearest to the one at a length, X and Z, pulses from the start.
     fn place(&self, length: u64) -> (i32, i32) {
-        let (x, z) = self.point(length);
+        let turned = self.quarters(length);
+        let (x, z) = (self.coordinate(Axis::X, turned), self.coordinate(Axis::Z, turned));
         let nearest = |v: i64| to_i32(v.wrapping_add(PULSE >> 1) >> 16);
         (nearest(x), nearest(z))
     }

@@ -50,11 +50,16 @@ impl Round {
         }
     }
 
-    /// Quarter turns to the angle at a length, the sine of the rest, and its cosine.
-    pub(crate) fn turned(&self, length: u64) -> (i64, i64, i64) {
+    /// Quarter turns to the angle at a length, and the rest.
+    pub(crate) fn quarters(&self, length: u64) -> (i64, i64) {
         let angle = self.start.wrapping_add(self.angle.of(length).cast_signed());
         let quarters = angle.checked_div_euclid(QUARTER_Q30).unwrap_or(0);
-        let rest = angle.wrapping_sub(quarters.wrapping_mul(QUARTER_Q30));
+        (quarters, angle.wrapping_sub(quarters.wrapping_mul(QUARTER_Q30)))
+    }
+
+    /// Quarter turns to the angle at a length, the sine of the rest, and its cosine.
+    pub(crate) fn turned(&self, length: u64) -> (i64, i64, i64) {
+        let (quarters, rest) = self.quarters(length);
         (quarters, sine(rest), sine(QUARTER_Q30.wrapping_sub(rest)))
     }
 
@@ -63,23 +68,18 @@ impl Round {
         sine.wrapping_mul(radius).wrapping_shr(30_u32.wrapping_sub(self.cut))
     }
 
-    /// The point at a length, X and Z, pulses from the start, 16 fraction bits.
-    pub(crate) fn point(&self, length: u64) -> (i64, i64) {
-        let (quarters, sine, cosine) = self.turned(length);
-        let (along, out) = match quarters & 3 {
-            0 => (sine, cosine),
-            1 => (cosine, sine.wrapping_neg()),
-            2 => (sine.wrapping_neg(), cosine.wrapping_neg()),
-            _ => (cosine.wrapping_neg(), sine),
+    /// The coordinate of an axis at an angle, pulses from the start, 16 fraction bits.
+    pub(crate) fn coordinate(&self, axis: Axis, (quarters, rest): (i64, i64)) -> i64 {
+        let ([first, second], [centre_x, centre_z]) = (self.radius, self.centre);
+        // the other axis is a quarter turn ahead
+        let (quarters, radius, sign) = if axis == self.axis {
+            (quarters, first, self.signs.0)
+        } else {
+            (quarters.wrapping_add(1), second, self.signs.1)
         };
-        let [first, second] = self.radius;
-        let along = self.part(along, first).wrapping_mul(i64::from(self.signs.0));
-        let out = self.part(out, second).wrapping_mul(i64::from(self.signs.1));
-        let (x, z) = match self.axis {
-            Axis::X => (along, out),
-            Axis::Z => (out, along),
-        };
-        let [centre_x, centre_z] = self.centre;
-        (centre_x.wrapping_add(x), centre_z.wrapping_add(z))
+        let turned = sine(if quarters & 1 == 0 { rest } else { QUARTER_Q30.wrapping_sub(rest) });
+        let turned = if quarters & 2 == 0 { turned } else { turned.wrapping_neg() };
+        let centre = if matches!(axis, Axis::X) { centre_x } else { centre_z };
+        centre.wrapping_add(self.part(turned, radius).wrapping_mul(i64::from(sign)))
     }
 }
