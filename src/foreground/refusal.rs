@@ -129,7 +129,7 @@ impl fmt::Display for Refusal {
             Self::BadContour => f.write_str("the contour can't be followed: its radii differ, or it leaves the range"),
             Self::NothingToRetrace => f.write_str("no program stands that could be run back: hold one first"),
             Self::NothingToReturnFrom => f.write_str("no power feed was made that could be returned from"),
-            Self::NoStop => f.write_str("there is no stop to repeat to: set one with stop-at"),
+            Self::NoStop => f.write_str("there is no stop to repeat to: set one with stop-at, or enter a contour"),
             Self::NothingToResume => f.write_str("nothing was interrupted that could be resumed"),
             Self::InThread => f.write_str("a thread is being cut: let it end, or hold"),
             Self::Limit(axis, plus) => {

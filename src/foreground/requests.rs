@@ -171,6 +171,9 @@ impl Foreground<'_> {
             self.channel.drop_path();
             self.desk.own.clear();
             self.desk.own_path = false;
+            if self.desk.power.on_contour() {
+                self.desk.power.phase = Phase::Rest;
+            }
             if !matches!(self.desk.mode, Mode::Linked) {
                 let _ = self.channel.set_drive(Drive::Time);
             }
