@@ -226,6 +226,7 @@ impl Foreground<'_> {
     }
 
     /// A tick of the way back.
+    #[cold]
     pub(super) fn return_along(&mut self) {
         let Some(&mut Way { rapid, began: Some(began), .. }) = self.desk.on_way() else {
             self.desk.power.phase = Phase::Rest;
@@ -284,6 +285,7 @@ impl Foreground<'_> {
 }
 
 /// So many percent of a speed.
+#[inline(never)]
 fn percent(speed: Speed, percent: u16) -> Speed {
     u32::try_from(u64::from(speed).wrapping_mul(u64::from(percent)) / 100).unwrap_or(u32::MAX)
 }

@@ -146,6 +146,9 @@ impl Desk {
     }
 
     /// Notes a refusal.
+    // many ask for it, and seldom: as a call it is smallest
+    #[cold]
+    #[inline(never)]
     pub(super) fn refuse(&mut self, refusal: Refusal) {
         if self.refused.is_full() {
             let _ = self.refused.pop_front();

@@ -57,6 +57,8 @@ impl Shoulder {
 /// * `motions`: the path's; together not longer than 2^62, nm with 12 fraction bits as all lengths here.
 /// * `at`: the place's length; it is not beyond the shoulder.
 /// * `shoulder`: counts from where the path begins.
+// a call for each axis and side, at a stand
+#[inline(never)]
 pub fn free<'m>(motions: impl Iterator<Item = &'m Motion>, at: u64, shoulder: Shoulder) -> (u64, u64) {
     let (mut least, mut most) = (0, None);
     let (mut begin, mut shoulder) = (0_u64, shoulder);
