@@ -14,6 +14,7 @@ mod pieces;
 pub use chain::Chain;
 #[cfg(feature = "methods")]
 pub use pieces::Pieces;
+pub mod shoulder;
 
 use crate::config::{FRACTION_BITS, Machine, speed_of};
 use crate::curve::arc::{Arc, NO_EXTREMES};

@@ -77,6 +77,11 @@ numbers! {
     36 { Refusal::WayBackEnds(BackEnd::Dwell) }
     37 { Refusal::WayBackEnds(BackEnd::Curve) }
     38 { Refusal::WayBackEnds(BackEnd::Full) }
+    39 { Refusal::InGroove }
+    40 { Refusal::Bound(Axis::X, true) }
+    41 { Refusal::Bound(Axis::X, false) }
+    42 { Refusal::Bound(Axis::Z, true) }
+    43 { Refusal::Bound(Axis::Z, false) }
 }
 
 /// Whether nobody waits for what becomes of it: a byte or a key that acts at once, while a request may be waited for.
@@ -99,6 +104,6 @@ mod tests {
             }
         }
         let alarms = (0..=0xff).filter(|number| Alarm::of(*number).is_some()).count();
-        assert_eq!(known, 38 + alarms);
+        assert_eq!(known, 43 + alarms);
     }
 }

@@ -4,7 +4,7 @@
 //! blocks. A contour begins where the tool stands when it is first driven.
 
 use heapless::Deque;
-use interp_core::block::{Block, Builder, Feed, Pace, Path, Work};
+use interp_core::block::{Block, Builder, Feed, Motion, Pace, Path, Work};
 use interp_core::config::Machine;
 use interp_core::units::{Lattice, Length, Point, PulseSize, Sense};
 
@@ -73,13 +73,17 @@ impl Own {
         self.build(machine, start, path, Point { x, z })
     }
 
+    /// Its motions.
+    pub(super) fn motions(&self) -> impl Iterator<Item = &Motion> {
+        self.blocks.iter().filter_map(|block| if let Work::Motion(motion) = &block.work { Some(motion) } else { None })
+    }
+
     /// Of each block: the least and the greatest place that it leads through, and its end, pulses from its start.
     pub(super) fn extents(&self) -> impl Iterator<Item = (Lattice, Lattice, Lattice)> + '_ {
         let at = |(x, z): (i32, i32)| Lattice { x, z };
-        self.blocks.iter().filter_map(move |block| {
-            let Work::Motion(motion) = &block.work else { return None };
+        self.motions().map(move |motion| {
             let (least, most) = motion.curve.extent();
-            Some((at(least), at(most), at(motion.curve.end())))
+            (at(least), at(most), at(motion.curve.end()))
         })
     }
 

@@ -1,5 +1,6 @@
 //! What the operator has set: mode, switches, coordinates; and what has become of what he asked for.
 
+use super::along::Way;
 use super::closed_loop::ClosedLoop;
 use super::contour::{Contour, Own};
 use super::homing;
@@ -28,6 +29,7 @@ pub(super) struct Desk {
     pub(super) own: Own,
     pub(super) own_path: bool,
     pub(super) contour: Option<Contour>,
+    pub(super) way: Option<Way>,
     pub(super) wheels: Wheels,
     pub(super) power: Power,
     pub(super) homing: homing::Phase,
@@ -117,6 +119,7 @@ impl Desk {
             own: Own::new(),
             own_path: false,
             contour: None,
+            way: None,
             wheels: Wheels::new(),
             power: Power::new(Feed::PerTick(1 << 12)),
             homing: homing::Phase::Rest,
@@ -143,6 +146,9 @@ impl Desk {
     }
 
     /// Notes a refusal.
+    // many ask for it, and seldom: as a call it is smallest
+    #[cold]
+    #[inline(never)]
     pub(super) fn refuse(&mut self, refusal: Refusal) {
         if self.refused.is_full() {
             let _ = self.refused.pop_front();

@@ -4,6 +4,7 @@
 //! what is not there at a tick's start is taken at the next.
 
 pub mod alarm;
+mod along;
 pub mod answer;
 mod closed_loop;
 pub mod command;

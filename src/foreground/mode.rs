@@ -84,7 +84,9 @@ pub struct Situation {
     pub verified: bool,
     /// There is something to return from: a power feed was made.
     pub cut: bool,
-    /// A shoulder stop is set.
+    /// That was a thread by lever: the tool may stand in its groove.
+    pub threaded: bool,
+    /// A shoulder stop is set, or a contour entered, which has an end.
     pub stop: bool,
     /// The position that a re-entry needs was kept.
     pub kept: bool,
@@ -125,7 +127,7 @@ pub fn refusal(command: &Command, now: &Situation) -> Option<Refusal> {
         | Command::Scale(_)
         | Command::FeedRate(_) => None,
         // a feed under way has the stops that it began with
-        Command::StopAt(..) if matches!(mode, Mode::Power) => at_rest(now),
+        Command::StopAt(..) if matches!(mode, Mode::Power | Mode::Linked) => at_rest(now),
         Command::StopAt(..) => None,
         Command::DryRun(_) | Command::MachineLock(_) | Command::Configure(_) | Command::Settle(_) => free(now),
         Command::Zero(..) => free(now).or(locked(now)),
@@ -135,6 +137,7 @@ pub fn refusal(command: &Command, now: &Situation) -> Option<Refusal> {
         Command::Home(_) => locked(now).or(powered(now)).or(free(now)),
         Command::Contour(_) => free(now),
         Command::Return | Command::Repeat(_) if !matches!(mode, Mode::Power) => Some(Refusal::WrongMode(Mode::Power)),
+        Command::Return if now.threaded => Some(Refusal::InGroove),
         Command::Return if !now.cut => Some(Refusal::NothingToReturnFrom),
         Command::Return => locked(now).or(guarded(now)).or(powered(now)).or(at_rest(now)),
         Command::Repeat(1..) if !now.stop => Some(Refusal::NoStop),

@@ -3,7 +3,6 @@
 use super::desk::{Nulling, part};
 use super::inputs::{AXES, Ends, Inputs, Joystick, PerAxis};
 use super::mode::Mode;
-use super::power::Phase;
 use super::refusal::Refusal;
 use super::{Alarm, Foreground};
 use interp_core::block::Feed;
@@ -62,7 +61,7 @@ impl Foreground<'_> {
         self.desk.inputs.wheels = PerAxis { x: 0, z: 0 };
         // what homing has begun to move is a slide until it stands
         let slides = matches!(self.desk.mode, Mode::Handwheel | Mode::Homing)
-            || matches!(self.desk.mode, Mode::Power) && !matches!(self.desk.power.phase, Phase::Contour);
+            || matches!(self.desk.mode, Mode::Power) && !self.desk.power.on_contour();
         if matches!(self.desk.nulling, Nulling::Waits) && self.channel.hands_rest() {
             self.null_offset();
         }
@@ -104,8 +103,20 @@ impl Foreground<'_> {
             let (dropped, at_end) = self.channel.turn_hand(axis, click, counts, ends);
             self.desk.wheels.drop(axis, dropped);
             if at_end {
-                self.desk.refuse(Refusal::Limit(axis, dropped > 0));
+                let refusal = self.end_of_hand(axis, dropped > 0, folds);
+                self.desk.refuse(refusal);
             }
+        }
+    }
+
+    /// What ends the room of a hand, that moves the slide or makes an offset.
+    fn end_of_hand(&self, axis: Axis, plus: bool, folds: bool) -> Refusal {
+        let (least, most) = self.desk.settings.axes.of(axis).bounds;
+        let off = part(self.channel.offset(), axis);
+        if !folds && if plus { off >= most } else { off <= least } {
+            Refusal::Bound(axis, plus)
+        } else {
+            Refusal::Limit(axis, plus)
         }
     }
 
@@ -124,7 +135,7 @@ impl Foreground<'_> {
         let free = match desk.mode {
             Mode::Handwheel => true,
             Mode::Homing => false,
-            Mode::Power => matches!(desk.power.phase, Phase::Contour) || !desk.power.drives(axis),
+            Mode::Power => desk.power.on_contour() || !desk.power.drives(axis),
             // beside a thread the spindle leads Z
             Mode::Automatic | Mode::ManualData | Mode::Linked | Mode::Retrace => {
                 matches!(axis, Axis::X) || !self.channel.in_thread()
@@ -160,24 +171,6 @@ impl Foreground<'_> {
         self.channel.read(&drive::Inputs { spindle: None, wheel: counts });
     }
 
-    /// Puts the contour into the channel where none is in it, from where the tool stands. False without one.
-    pub(super) fn begin_contour(&mut self) -> bool {
-        let Some(contour) = self.desk.contour else {
-            self.desk.refuse(Refusal::NoContour);
-            return false;
-        };
-        let from = self.channel.position();
-        let drive = Drive::Wheel(self.desk.wheels.contour());
-        let desk = &mut self.desk;
-        if !desk.own.contour(&desk.machine, from, &contour) || !self.within_limits() {
-            self.desk.own.clear();
-            self.desk.refuse(Refusal::BadContour);
-            return false;
-        }
-        let _ = self.channel.set_drive(drive);
-        self.begin_own()
-    }
-
     /// Begins the path of the machine's own that was built.
     pub(super) fn begin_own(&mut self) -> bool {
         self.desk.own_path = self.channel.start();
@@ -193,11 +186,12 @@ impl Foreground<'_> {
     pub(super) fn begin_line(&mut self, to: Lattice, feed: Feed) -> bool {
         let from = self.channel.position();
         let _ = self.channel.set_drive(Drive::Time);
+        self.desk.way = None;
         self.desk.own.line(&self.desk.machine, from, to, feed) && self.begin_own()
     }
 
     /// Whether the path that was built stays inside the soft limits.
-    fn within_limits(&self) -> bool {
+    pub(super) fn within_limits(&self) -> bool {
         let mut at = self.place();
         self.desk.own.extents().all(|(least, most, end)| {
             let inside = AXES.into_iter().all(|axis| {

@@ -2,15 +2,15 @@
 //!
 //! A feed along an axis is a straight path of the machine's own, from where the tool stands to the shoulder stop, else to the
 //! soft limit: so feed, override, feed a turn of the spindle and an exact end are those of any path. Letting go of the
-//! joystick brakes and forgets it. Along the contour the joystick [pulls](interp_core::channel::Pull).
+//! joystick brakes and forgets it, and so does a hold. What follows the contour is [elsewhere](super::along).
 
 use super::Foreground;
 use super::desk::{part, part_mut};
 use super::inputs::{Joystick, PerAxis};
 use super::mode::Mode;
 use super::refusal::Refusal;
-use interp_core::block::{Feed, Speed};
-use interp_core::channel::{Pull, State};
+use interp_core::block::Feed;
+use interp_core::channel::State;
 use interp_core::units::{Axis, Lattice};
 
 /// What power feed is doing.
@@ -20,8 +20,10 @@ pub(super) enum Phase {
     Rest,
     /// Along an axis.
     Feed { axis: Axis, plus: bool },
-    /// Along the contour.
-    Contour,
+    /// On the contour: led forward, or back, by a push, or standing.
+    Contour(Option<bool>),
+    /// Along the contour back to where the push began.
+    ContourReturn,
     /// A thread by lever.
     Thread,
     /// Back to where it began.
@@ -42,6 +44,8 @@ pub(super) struct Power {
     pub(super) came: PerAxis<Option<bool>>,
     /// Where the last feed began.
     pub(super) began: Option<Lattice>,
+    /// It was a thread by lever.
+    pub(super) threaded: bool,
     /// Feeds that are still to be made there and back, the present one included.
     pub(super) repeats: u16,
     /// The feed runs at rapid, else at this feed.
@@ -59,6 +63,7 @@ impl Power {
             stops: PerAxis { x: None, z: None },
             came: PerAxis { x: None, z: None },
             began: None,
+            threaded: false,
             repeats: 0,
             rapid: false,
             runs_at: feed,
@@ -78,16 +83,34 @@ impl Power {
         self.done = joystick;
     }
 
-    /// Where a feed along an axis from `from` ends: at the stop, where it lies that way, else at the limit. An axis that
-    /// stands at its stop may leave it the way it came.
+    /// Where a feed along an axis from `from` ends: at the stop, where it lies that way, else at the limit.
     pub(super) fn end(&self, axis: Axis, plus: bool, from: i32, limit: i32) -> i32 {
-        let leaves = self.came.of(axis).is_some_and(|came| came != plus);
-        let ahead = |stop: i32| if plus { stop > from } else { stop < from };
-        let stop = self.stops.of(axis).filter(|&stop| ahead(stop) || stop == from && !leaves);
-        match stop {
+        match self.stop_ahead(axis, plus, from) {
             Some(stop) if plus => stop.min(limit),
             Some(stop) => stop.max(limit),
             None => limit,
+        }
+    }
+
+    /// The stop of an axis that is at `from`, where it lies that way. An axis that stands at its stop may leave it the way it came.
+    pub(super) fn stop_ahead(&self, axis: Axis, plus: bool, from: i32) -> Option<i32> {
+        let leaves = self.came.of(axis).is_some_and(|came| came != plus);
+        let ahead = |stop: i32| if plus { stop > from } else { stop < from };
+        self.stops.of(axis).filter(|&stop| ahead(stop) || stop == from && !leaves)
+    }
+
+    /// Whether the tool is on the contour.
+    pub(super) const fn on_contour(&self) -> bool {
+        matches!(self.phase, Phase::Contour(_) | Phase::ContourReturn)
+    }
+
+    /// Back where a feed began: with repeats left the joystick begins the next one.
+    pub(super) const fn repeat(&mut self) {
+        if self.repeats > 0 {
+            self.repeats = self.repeats.wrapping_sub(1);
+            if self.repeats > 0 {
+                self.done = Joystick::Off;
+            }
         }
     }
 
@@ -98,7 +121,7 @@ impl Power {
             Phase::Feed { axis: driven, .. } => driven == axis,
             // beside a thread X is the operator's
             Phase::Thread => matches!(axis, Axis::Z),
-            Phase::Contour | Phase::Return | Phase::Brake => true,
+            Phase::Contour(_) | Phase::ContourReturn | Phase::Return | Phase::Brake => true,
         }
     }
 }
@@ -115,30 +138,39 @@ impl Foreground<'_> {
             Mode::Handwheel | Mode::Automatic | Mode::ManualData | Mode::Homing => return,
         }
         let pushed = self.pushed();
+        let held = matches!(self.channel.state(), State::Holding);
         match self.desk.power.phase {
             Phase::Rest => match pushed {
                 Joystick::Off => {}
                 Joystick::Axis(axis, plus) => self.begin_feed(axis, plus),
-                Joystick::Path(_) => self.pull_on(),
+                Joystick::Path(_) => self.follow_contour(None),
             },
             Phase::Feed { axis, plus } if self.desk.own_path => {
-                if pushed == Joystick::Axis(axis, plus) {
+                if held {
+                    // what goes on is another push
+                    self.desk.power.done = self.desk.inputs.joystick;
+                }
+                if pushed == Joystick::Axis(axis, plus) && !held {
                     self.feed_at();
                 } else {
                     self.brake();
                 }
             }
             Phase::Feed { axis, plus } => self.arrived(axis, plus),
-            Phase::Contour => self.pull_on(),
+            Phase::Contour(led) => self.follow_contour(led),
+            Phase::ContourReturn => self.return_along(),
             Phase::Thread => self.thread_on(),
             Phase::Return if self.desk.own_path => {
                 // with the joystick let go, or a push of it that asked for no return, it brakes
                 let repeats = self.desk.power.repeats > 0;
-                if repeats && matches!(self.desk.inputs.joystick, Joystick::Off) || self.desk.inputs.guard {
+                if repeats && matches!(self.desk.inputs.joystick, Joystick::Off) || self.desk.inputs.guard || held {
                     self.brake();
                 }
             }
-            Phase::Return => self.returned(),
+            Phase::Return => {
+                self.desk.power.phase = Phase::Rest;
+                self.desk.power.repeat();
+            }
             Phase::Brake if self.desk.own_path => {}
             Phase::Brake => self.desk.power.phase = Phase::Rest,
         }
@@ -147,6 +179,11 @@ impl Foreground<'_> {
     /// Begins a feed along an axis.
     fn begin_feed(&mut self, axis: Axis, plus: bool) {
         if !self.channel.hands_rest() {
+            return;
+        }
+        if self.desk.power.repeats > 0 && self.desk.power.stops.of(axis).is_none() {
+            self.desk.power.done = Joystick::Axis(axis, plus);
+            self.desk.refuse(Refusal::NoStop);
             return;
         }
         self.drop_path();
@@ -159,7 +196,8 @@ impl Foreground<'_> {
         let mut to = position;
         *part_mut(&mut to, axis) = self.desk.representable(axis, end);
         let (power, rapid) = (&mut self.desk.power, self.desk.inputs.rapid);
-        (power.began, power.rapid, power.runs_at) = (Some(position), rapid, power.feed);
+        (power.began, power.threaded) = (Some(position), false);
+        (power.rapid, power.runs_at) = (rapid, power.feed);
         if self.begin_line(to, self.desk.power.runs()) {
             self.desk.power.phase = Phase::Feed { axis, plus };
         } else {
@@ -198,55 +236,6 @@ impl Foreground<'_> {
         {
             self.desk.power.phase = Phase::Return;
         }
-    }
-
-    /// Back where the feed began: with repeats left the next one begins.
-    fn returned(&mut self) {
-        let power = &mut self.desk.power;
-        power.phase = Phase::Rest;
-        if power.repeats > 0 {
-            power.repeats = power.repeats.wrapping_sub(1);
-            if power.repeats > 0 {
-                power.done = Joystick::Off;
-            }
-        }
-    }
-
-    /// The joystick along the contour.
-    fn pull_on(&mut self) {
-        let pushed = self.pushed();
-        let power = matches!(self.desk.mode, Mode::Power);
-        let Joystick::Path(forward) = pushed else {
-            self.channel.pull(None);
-            // in power feed another direction leaves the contour when it stands
-            if power && self.channel.speed() == 0 && !matches!(pushed, Joystick::Off) {
-                self.desk.power.phase = Phase::Rest;
-                self.drop_path();
-            }
-            return;
-        };
-        if matches!(self.channel.state(), State::Idle | State::Ended) {
-            if !self.channel.hands_rest() || self.desk.starting {
-                return;
-            }
-            if matches!(self.desk.mode, Mode::Retrace) || !self.begin_contour() {
-                self.desk.power.done = pushed;
-                return;
-            }
-            if power {
-                self.desk.power.began = Some(self.channel.position());
-                self.desk.power.phase = Phase::Contour;
-            }
-        }
-        let speed = match (self.desk.inputs.rapid, self.desk.power.feed) {
-            (true, _) | (false, Feed::Rapid | Feed::Thread(..)) => Speed::MAX,
-            (false, Feed::PerTick(speed)) => {
-                let scaled = u64::from(speed).wrapping_mul(u64::from(self.channel.feed_override())) / 100;
-                u32::try_from(scaled).unwrap_or(u32::MAX)
-            }
-            (false, Feed::PerTurn(lead)) => self.channel.per_turn(lead),
-        };
-        self.channel.pull(Some(Pull { back: !forward, speed }));
     }
 }
 

@@ -47,6 +47,10 @@ pub enum Refusal {
     InThread,
     /// The axis would leave its limits, to plus or minus.
     Limit(Axis, bool),
+    /// The offset would leave its bounds, to plus or minus.
+    Bound(Axis, bool),
+    /// The last feed was a thread by lever: the tool may stand in the groove.
+    InGroove,
     /// The wheel asks for the path to be led farther back than it can be, and why it can't.
     WayBackEnds(BackEnd),
     /// The joystick asks for a path and there is none, or was latched when the mode was entered.
@@ -87,6 +91,11 @@ impl Refusal {
             Self::Limit(Axis::X, false) => "limit-x-",
             Self::Limit(Axis::Z, true) => "limit-z+",
             Self::Limit(Axis::Z, false) => "limit-z-",
+            Self::Bound(Axis::X, true) => "bound-x+",
+            Self::Bound(Axis::X, false) => "bound-x-",
+            Self::Bound(Axis::Z, true) => "bound-z+",
+            Self::Bound(Axis::Z, false) => "bound-z-",
+            Self::InGroove => "in-groove",
             Self::WayBackEnds(BackEnd::Start) => "way-back-start",
             Self::WayBackEnds(BackEnd::Output) => "way-back-output",
             Self::WayBackEnds(BackEnd::Thread) => "way-back-thread",
@@ -120,11 +129,17 @@ impl fmt::Display for Refusal {
             Self::BadContour => f.write_str("the contour can't be followed: its radii differ, or it leaves the range"),
             Self::NothingToRetrace => f.write_str("no program stands that could be run back: hold one first"),
             Self::NothingToReturnFrom => f.write_str("no power feed was made that could be returned from"),
-            Self::NoStop => f.write_str("there is no stop to repeat to: set one with stop-at"),
+            Self::NoStop => f.write_str("there is no stop to repeat to: set one with stop-at, or enter a contour"),
             Self::NothingToResume => f.write_str("nothing was interrupted that could be resumed"),
             Self::InThread => f.write_str("a thread is being cut: let it end, or hold"),
             Self::Limit(axis, plus) => {
                 write!(f, "{} is at its {} limit", axis.letter(), if *plus { "plus" } else { "minus" })
+            }
+            Self::Bound(axis, plus) => {
+                write!(f, "the offset of {} is at its {} bound", axis.letter(), if *plus { "plus" } else { "minus" })
+            }
+            Self::InGroove => {
+                f.write_str("the tool may stand in the groove: pull X out and lead Z back by power or wheel")
             }
             Self::WayBackEnds(end) => end.fmt(f),
             Self::JoystickLatched => f.write_str("the joystick is latched: move it to the middle first"),

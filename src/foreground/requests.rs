@@ -41,8 +41,9 @@ impl Foreground<'_> {
             guard: desk.inputs.guard,
             motors: desk.motors,
             verified: desk.verified.x && desk.verified.z,
-            cut: desk.power.began.is_some(),
-            stop: desk.power.stops.x.is_some() || desk.power.stops.z.is_some(),
+            cut: desk.power.began.is_some() || desk.way_began().is_some(),
+            threaded: desk.power.threaded,
+            stop: desk.power.stops.x.is_some() || desk.power.stops.z.is_some() || desk.contour.is_some(),
             kept: desk.interrupted != 0,
             thread: self.channel.in_thread(),
         }
@@ -170,6 +171,9 @@ impl Foreground<'_> {
             self.channel.drop_path();
             self.desk.own.clear();
             self.desk.own_path = false;
+            if self.desk.power.on_contour() {
+                self.desk.power.phase = Phase::Rest;
+            }
             if !matches!(self.desk.mode, Mode::Linked) {
                 let _ = self.channel.set_drive(Drive::Time);
             }
@@ -232,11 +236,16 @@ impl Foreground<'_> {
             Stop::Here => Some(part(self.channel.position(), axis)),
             Stop::At(at) => Some(pulse.nearest(at)),
         };
+        self.move_shoulders();
         Ok(())
     }
 
-    /// Rapid back to where the last power feed began.
+    /// Rapid back to where the last power feed began, along what it went along.
     fn go_back(&mut self) -> Result<(), Refusal> {
+        if self.desk.way_began().is_some() {
+            self.lead_back();
+            return Ok(());
+        }
         let Some(began) = self.desk.power.began else { return Err(Refusal::NothingToReturnFrom) };
         self.drop_path();
         if self.begin_line(began, Feed::Rapid) {
@@ -263,7 +272,7 @@ impl Foreground<'_> {
             *datum = datum.wrapping_sub(by);
             let stop = self.desk.power.stops.of_mut(axis);
             *stop = stop.map(|stop| stop.wrapping_add(by));
-            self.desk.power.began = None;
+            (self.desk.power.began, self.desk.power.threaded) = (None, false);
             *self.desk.verified.of_mut(axis) = true;
             self.desk.closed_loop.forget(axis);
         }

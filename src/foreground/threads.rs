@@ -100,6 +100,7 @@ impl Foreground<'_> {
             return Err(Refusal::Limit(Axis::Z, plus));
         }
         self.desk.lever = Lever::In;
+        (self.desk.power.began, self.desk.power.threaded) = (None, true);
         self.desk.power.phase = Phase::Thread;
         Ok(())
     }

@@ -24,8 +24,9 @@ use crate::curve::method::Method;
 use crate::curve::point_comparison::{ComparedArc, ComparedLine};
 use crate::curve::proportion::Proportion;
 use crate::curve::rate_multiplier::MultipliedLine;
+use crate::curve::round::Round;
 use crate::curve::{OneWay, Step, Walker};
-use crate::math::{QUARTER_Q30, root, sine, to_i32, to_u32};
+use crate::math::{root, to_i32, to_u32};
 use crate::times::{PULSE, Stretch};
 use crate::train::Train;
 use crate::units::Axis;
@@ -221,64 +222,7 @@ impl PulseRunner {
 /// How far a walker may be off its timeline where it changes the quadrant.
 const MOST_OFF: i64 = PULSE * 4;
 
-/// Where a point is that goes round an arc, as a function of the length.
-#[derive(Clone, Debug)]
-struct Round {
-    angle: Proportion,
-    /// Angle of the start from an axis of the circle, 30 fraction bits.
-    start: i64,
-    /// The axis that travel moves along there, and the signs of its travel and of the other one's coordinate.
-    axis: Axis,
-    signs: (i8, i8),
-    /// Radius in pulses of that axis and of the other, 16 fraction bits less `cut`, which fit 32 bits.
-    radius: [i64; 2],
-    cut: u32,
-    /// Centre, X and Z, pulses from the start, 16 fraction bits.
-    centre: [i64; 2],
-    /// Of the whole arc.
-    length: u64,
-}
-
 impl Round {
-    fn new(arc: &Arc) -> Self {
-        let timeline = &arc.timeline;
-        let axis = Arc::major(arc.octant);
-        let (sign_x, sign_z) = Arc::signs(arc.octant, arc.sense);
-        let [radius_x, radius_z] = timeline.radius_pulses;
-        let (radius, signs) = match axis {
-            Axis::X => ([radius_x, radius_z], (sign_x, sign_z)),
-            Axis::Z => ([radius_z, radius_x], (sign_z, sign_x)),
-        };
-        // before the extreme the other axis moves outward, behind it inward
-        let inward = Arc::ends_at_tangent(arc.octant, arc.sense);
-        let signs = if inward { (signs.0, signs.1.wrapping_neg()) } else { signs };
-        let longest = radius_x.max(radius_z);
-        let cut = 64_u32.wrapping_sub(longest.leading_zeros()).saturating_sub(32);
-        Self {
-            angle: timeline.angle,
-            start: i64::from(timeline.start_angle),
-            axis,
-            signs,
-            radius: radius.map(|radius| radius.wrapping_shr(cut).cast_signed()),
-            cut,
-            centre: timeline.centre,
-            length: timeline.length,
-        }
-    }
-
-    /// Quarter turns to the angle at a length, the sine of the rest, and its cosine.
-    fn turned(&self, length: u64) -> (i64, i64, i64) {
-        let angle = self.start.wrapping_add(self.angle.of(length).cast_signed());
-        let quarters = angle.checked_div_euclid(QUARTER_Q30).unwrap_or(0);
-        let rest = angle.wrapping_sub(quarters.wrapping_mul(QUARTER_Q30));
-        (quarters, sine(rest), sine(QUARTER_Q30.wrapping_sub(rest)))
-    }
-
-    /// A sine times a radius: pulses, 16 fraction bits.
-    const fn part(&self, sine: i64, radius: i64) -> i64 {
-        sine.wrapping_mul(radius).wrapping_shr(30_u32.wrapping_sub(self.cut))
-    }
-
     /// Pulses of both axes from the axis of the circle on.
     fn sum(&self, (quarters, sine, cosine): (i64, i64, i64)) -> i64 {
         let [first, second] = self.radius;
@@ -307,23 +251,10 @@ impl Round {
 
     /// The lattice point nearest to the one at a length, X and Z, pulses from the start.
     fn place(&self, length: u64) -> (i32, i32) {
-        let (quarters, sine, cosine) = self.turned(length);
-        let (along, out) = match quarters & 3 {
-            0 => (sine, cosine),
-            1 => (cosine, sine.wrapping_neg()),
-            2 => (sine.wrapping_neg(), cosine.wrapping_neg()),
-            _ => (cosine.wrapping_neg(), sine),
-        };
-        let [first, second] = self.radius;
-        let along = self.part(along, first).wrapping_mul(i64::from(self.signs.0));
-        let out = self.part(out, second).wrapping_mul(i64::from(self.signs.1));
-        let (x, z) = match self.axis {
-            Axis::X => (along, out),
-            Axis::Z => (out, along),
-        };
-        let [centre_x, centre_z] = self.centre;
+        let turned = self.quarters(length);
+        let (x, z) = (self.coordinate(Axis::X, turned), self.coordinate(Axis::Z, turned));
         let nearest = |v: i64| to_i32(v.wrapping_add(PULSE >> 1) >> 16);
-        (nearest(centre_x.wrapping_add(x)), nearest(centre_z.wrapping_add(z)))
+        (nearest(x), nearest(z))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Drives other than time: which one turns the crank, their inputs, and what they keep from tick to tick.
 
 use super::Memory;
+use super::along::Along;
 use super::groove::Groove;
 use super::lookahead::{Overrides, pace};
 use super::thread_hold::ThreadHold;
@@ -39,6 +40,7 @@ pub(super) struct Crank {
     pub(super) driven: Driven,
     pub(super) counts: i16,
     pub(super) wheel: Wheel,
+    pub(super) along: Along,
     pub(super) pull: Option<Pull>,
     pub(super) spindle: Option<Spindle>,
     /// From the spindle's angle to path, while it drives.
@@ -64,6 +66,7 @@ impl Crank {
             driven: Driven::NONE,
             counts: 0,
             wheel: Wheel::new(),
+            along: Along::new(),
             pull: None,
             spindle: None,
             gearing: None,
@@ -98,6 +101,7 @@ impl Crank {
         let dropped = counts.saturating_add(if pulled { 0 } else { rest });
         self.driven.dropped = self.driven.dropped.saturating_add(dropped);
         self.wheel = Wheel::new();
+        self.along = Along::new();
         self.ungear();
     }
 

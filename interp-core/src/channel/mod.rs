@@ -4,6 +4,7 @@
 //! are taken only at a tick's start and only as many as fit, so as long as the source keeps up the train does not
 //! depend on when they arrived; should the source lag, the plan ends in standstill and the lag is counted.
 
+mod along;
 #[cfg(feature = "methods")]
 mod classic;
 #[cfg(feature = "methods")]

@@ -70,6 +70,11 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         if to_go == 0 || stands || !matches!(self.state, State::Running) {
             return false;
         }
+        let end = self.crank.along.room(to_go < 0);
+        if end == 0 {
+            self.drop_rest(click);
+            return false;
+        }
         self.crank.back = to_go < 0;
         if !self.enter(self.crank.back) {
             // without an end the motion before is not ready yet: it waits
@@ -83,7 +88,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let Current::Motion(active) = &self.current else { return false };
         let motion = &active.motion;
         let pace = self.crank.pull.map_or(Speed::MAX, |pull| pull.speed);
-        let most = root(motion.reachable(to_go.unsigned_abs(), 0));
+        let most = root(motion.reachable(to_go.unsigned_abs().min(end), 0));
         self.speed = motion.accel.min(motion.limit).min(most).min(pace).max(1);
         if !self.fence.is_calm(self.tool()) && self.is_fenced(self.crank.back) {
             self.speed = 0;
@@ -137,21 +142,21 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let Current::Motion(active) = &self.current else { return None };
         let motion = &active.motion;
         let Memory { ahead, trail } = self.memory.borrow();
-        let mut exit = if back { trail.exit_back() } else { trail.exit(ahead, motion, false) };
+        let planned = if back { trail.exit_back() } else { trail.exit(ahead, motion, false) };
+        // what is left of the motion, and the squared speed to leave it with, where the path is to stand after such a length
+        let ending = |length: u64| match length.checked_sub(room) {
+            None | Some(0) => (length, 0),
+            Some(beyond) => (room, self.neighbour(back).map_or(planned, |next| planned.min(next.reachable(beyond, 0)))),
+        };
         let to_go = self.crank.wheel.to_go();
-        let asked = u64::try_from(if back { to_go.wrapping_neg() } else { to_go }).unwrap_or(0);
-        let mut left = room;
-        if asked <= room {
-            (left, exit) = (asked, 0);
-        } else if let Some(next) = self.neighbour(back) {
-            exit = exit.min(next.reachable(asked.wrapping_sub(room), 0));
-        }
+        let end = self.crank.along.room(back);
+        let asked = u64::try_from(if back { to_go.wrapping_neg() } else { to_go }).unwrap_or(0).min(end);
+        let (mut left, mut exit) = ending(asked);
         let pace = self.crank.pull.map_or(Speed::MAX, |pull| pull.speed).min(motion.limit);
         let stops = asked > 0 && pace > 0 && motion.reachable(left, exit) >= square(self.speed);
         let target = if stops { self.hands.cap(pace, motion.limit) } else { 0 };
         if !stops {
-            left = room;
-            exit = if back { trail.exit_back() } else { trail.exit(ahead, motion, false) };
+            (left, exit) = ending(end);
             if self.speed <= motion.accel {
                 self.speed = 0;
                 return None;
@@ -163,6 +168,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let by = advance.length.min(room);
         let signed = if back { by.cast_signed().wrapping_neg() } else { by.cast_signed() };
         self.crank.wheel.went(signed);
+        self.crank.along.went(signed);
         self.pass(back, by, Stretch { from: clock, clocks: advance.clocks }, out);
         if advance.done {
             self.over_joint(back);

@@ -26,6 +26,7 @@ pub(crate) mod preparation;
 pub mod prepare_arc;
 pub mod proportion;
 pub mod rate_multiplier;
+pub(crate) mod round;
 pub mod strides;
 
 #[cfg(test)]

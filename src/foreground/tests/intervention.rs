@@ -72,7 +72,7 @@ fn an_offset_goes_no_further_than_its_bound() {
     bench.ticks(200);
     assert_eq!(bench.shown().offset.x, 400);
     assert!(bench.shown().dropped.x > 1000);
-    assert_eq!(bench.refused(), Some(Refusal::Limit(Axis::X, true)));
+    assert_eq!(bench.refused(), Some(Refusal::Bound(Axis::X, true)));
     bench.settle();
     assert_eq!(bench.at, Lattice { x: END.x + 400, z: 0 });
 }

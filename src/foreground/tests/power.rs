@@ -129,3 +129,88 @@ fn the_joystick_leads_along_a_taper_and_back() {
     assert_eq!(bench.at, Lattice::default());
     bench.keep_limits();
 }
+
+/// Where the tool is on a taper to (800, -1200): half a pulse of each axis off at most.
+fn on_taper(at: Lattice) -> bool {
+    (at.x * 1200 + at.z * 800).abs() <= 1000
+}
+
+#[test]
+fn a_taper_is_fed_along_to_the_shoulder_and_back_as_often_as_asked_for() {
+    for law in ["linear", "sine"] {
+        let mut bench = Bench::with(&[("accel", law)]);
+        bench.ask(Command::Mode(Mode::Power)).unwrap();
+        bench.ask(Command::FeedRate(feed(3_000))).unwrap();
+        let end = interp_core::units::Point { x: mm(1), z: mm(-3) };
+        bench.ask(Command::Contour(Contour::Taper(end))).unwrap();
+        bench.ask(Command::StopAt(Axis::Z, Stop::At(mm(-2)))).unwrap();
+        bench.ask(Command::Repeat(3)).unwrap();
+        bench.inputs.joystick = Joystick::Path(true);
+        bench.settle();
+        bench.ticks(500);
+        assert_eq!(bench.at, Lattice::default(), "{law}");
+        assert_eq!(bench.shown().state, State::Holding);
+        let ends = bench.track.windows(2).filter(|pair| pair[0].z != -800 && pair[1].z == -800).count();
+        assert_eq!(ends, 3, "{law}");
+        assert!(bench.track.iter().all(|at| at.z >= -800 && on_taper(*at)));
+        // the joystick led back and forth by hand: it ends at the contour's begin, and at the shoulder again
+        bench.inputs.joystick = Joystick::Path(false);
+        bench.ticks(300);
+        assert_eq!(bench.at, Lattice::default());
+        bench.inputs.joystick = Joystick::Path(true);
+        bench.settle();
+        assert_eq!(bench.at, Lattice { x: 533, z: -800 });
+        bench.keep_limits();
+    }
+}
+
+#[test]
+fn a_guard_that_is_opened_ends_the_way_back_and_return_goes_on() {
+    let mut bench = power();
+    let end = interp_core::units::Point { x: mm(10), z: mm(-30) };
+    bench.ask(Command::FeedRate(feed(5_000))).unwrap();
+    bench.ask(Command::Contour(Contour::Taper(end))).unwrap();
+    bench.inputs.joystick = Joystick::Path(true);
+    bench.settle();
+    bench.inputs.joystick = Joystick::Off;
+    bench.ticks(3);
+    bench.ask(Command::Return).unwrap();
+    bench.ticks(100);
+    bench.inputs.guard = true;
+    bench.settle();
+    let at = bench.at;
+    assert!(at.z > -12_000 && at.z < -1_000, "{at:?}");
+    bench.inputs.guard = false;
+    bench.ticks(300);
+    assert_eq!(bench.at, at);
+    bench.ask(Command::Return).unwrap();
+    bench.settle();
+    assert_eq!(bench.at, Lattice::default());
+    bench.keep_limits();
+}
+
+#[test]
+fn a_push_along_the_contour_waits_for_the_hands() {
+    let mut bench = power();
+    let end = interp_core::units::Point { x: mm(40), z: mm(-2) };
+    bench.ask(Command::Contour(Contour::Taper(end))).unwrap();
+    bench.ask(Command::Scale(Some(Click::DECADES[2]))).unwrap();
+    bench.inputs.joystick = Joystick::Path(true);
+    bench.ticks(300);
+    bench.inputs.joystick = Joystick::Off;
+    bench.ticks(200);
+    // held on the contour the wheels have all of the acceleration: a push waits until they have used it
+    bench.turn(Axis::X, 20, 20);
+    bench.inputs.joystick = Joystick::Path(true);
+    let mut waited = 0;
+    while bench.shown().state != State::Running {
+        bench.tick();
+        waited += 1;
+        assert!(waited < 1_000);
+    }
+    let offset = bench.shown().offset.x;
+    assert!(waited > 20 && offset > 200, "{waited} {offset}");
+    bench.ticks(1_000);
+    assert_eq!(bench.shown().offset.x, offset);
+    bench.keep_limits();
+}

@@ -1,6 +1,6 @@
 //! The state machine: what is refused changes nothing.
 
-use super::command::Stop;
+use super::command::{PickUpStep, Stop};
 use super::mode::Situation;
 use super::*;
 use interp_core::units::Length;
@@ -76,6 +76,7 @@ const REST: Situation = Situation {
     motors: true,
     verified: true,
     cut: false,
+    threaded: false,
     stop: false,
     kept: false,
     thread: false,
@@ -213,7 +214,11 @@ fn the_book_has_the_table() {
         ("overrides, single block, optional stop", Command::FeedOverride(100)),
         ("dry run, machine lock, parameters", Command::DryRun(true)),
         ("taper, arc", Command::Contour(super::contour::Contour::Taper(interp_core::units::Point::default()))),
+        ("stop-at", Command::StopAt(Axis::Z, Stop::Here)),
         ("return", Command::Return),
+        ("repeat", Command::Repeat(1)),
+        ("threading lever in", Command::Lever(true)),
+        ("pick-up", Command::PickUp(PickUpStep::Begin)),
         ("home", Command::Home(Axis::X)),
         ("zero, touch off", Command::Zero(Axis::X, zero)),
         ("confirm position", Command::ConfirmPosition),
@@ -223,11 +228,12 @@ fn the_book_has_the_table() {
         ("spindle on", Command::Spindle(1)),
         ("resume", Command::Resume),
     ];
-    let table = |head: &str, columns: &[(&str, Situation)]| {
+    let of_power = ["cycle start", "feed hold", "another mode", "stop-at", "return", "repeat", "threading lever in"];
+    let table = |head: &str, columns: &[(&str, Situation)], some: &[&str]| {
         let mut table = String::new();
         let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
         writeln!(table, "| {head} | {} |\n|---|{}", names.join(" | "), "---|".repeat(names.len())).unwrap();
-        for (name, command) in &rows {
+        for (name, command) in rows.iter().filter(|(name, _)| some.is_empty() || some.contains(name)) {
             let cells: Vec<&str> =
                 columns.iter().map(|(_, now)| mode::refusal(command, now).map_or("yes", Refusal::name)).collect();
             writeln!(table, "| {name} | {} |", cells.join(" | ")).unwrap();
@@ -244,8 +250,21 @@ fn the_book_has_the_table() {
         ("motors off", Situation { motors: false, verified: false, ..rest }),
         ("unverified", Situation { verified: false, ..rest }),
     ];
+    let fed = Situation { mode: Mode::Power, ..rest };
+    let in_power = [
+        ("fed along X or Z", Situation { state: State::Running, own_path: true, moves: true, ..fed }),
+        ("standing on the contour", Situation { state: State::Holding, own_path: true, ..fed }),
+        ("no feed, stop or contour yet", Situation { cut: false, stop: false, ..fed }),
+        ("after a thread by lever", Situation { cut: false, threaded: true, ..fed }),
+        ("alarm", Situation { alarm: Some(Alarm::Emergency), ..fed }),
+        ("guard open", Situation { guard: true, ..fed }),
+    ];
     let book = include_str!("../../../docs/src/modes.md");
-    for wanted in [table("at rest, in mode", &at_rest), table("in automatic", &in_auto)] {
+    for wanted in [
+        table("at rest, in mode", &at_rest, &[]),
+        table("in automatic", &in_auto, &[]),
+        table("in power feed", &in_power, &of_power),
+    ] {
         assert!(book.contains(&wanted), "the book lacks this table:\n{wanted}");
     }
 }
