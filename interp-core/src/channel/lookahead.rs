@@ -13,6 +13,7 @@ pub(super) mod smooth;
 mod sweep;
 
 use super::margins::Margins;
+use super::swath::Swath;
 use crate::block::{Block, Feed, Motion, Speed, Work};
 use crate::governor::square;
 use crate::math::to_u32;
@@ -29,6 +30,7 @@ struct Planned {
     margins: Margins,
     /// Under an S law: it is begun from standstill, whatever is before it.
     stands: bool,
+    swath: Swath,
 }
 
 /// The entry of a block that no sweep has come to. Whatever leads up to it ends as if it were not there.
@@ -109,7 +111,8 @@ impl<const N: usize> Lookahead<N> {
     /// Adds a block; it is planned by the next [`plan`](Self::plan).
     pub fn push(&mut self, block: Block) {
         // the caller asked `has_room`; a full queue would show as a missing block, so it must not be full
-        let _ = self.blocks.push_back(Planned { block, entry: NOT_YET, margins: Margins::EMPTY, stands: false });
+        let swath = Swath::of(&block);
+        let _ = self.blocks.push_back(Planned { block, entry: NOT_YET, margins: Margins::EMPTY, stands: false, swath });
     }
 
     /// The next block, with the squared speed at which it may be entered.
@@ -120,6 +123,11 @@ impl<const N: usize> Lookahead<N> {
     /// The blocks, the nearest first.
     pub fn blocks(&self) -> impl Iterator<Item = &Block> {
         self.blocks.iter().map(|planned| &planned.block)
+    }
+
+    /// The same with what they lead through.
+    pub(super) fn swaths(&self) -> impl Iterator<Item = (&Block, &Swath)> {
+        self.blocks.iter().map(|planned| (&planned.block, &planned.swath))
     }
 
     /// Sets the feed of all motions, but of threads.

@@ -25,6 +25,7 @@ mod runner;
 mod settings;
 mod single;
 pub mod superposed;
+mod swath;
 mod thread_hold;
 mod trail;
 mod walk;
