@@ -17,7 +17,7 @@
 
 use core::borrow::BorrowMut;
 
-use super::swath::shed;
+use super::swath::{Groups, shed};
 use super::{Active, Channel, Current, Memory, State, lookahead};
 use crate::block::{Motion, Speed, Work};
 use crate::drive::Drive;
@@ -47,7 +47,7 @@ impl Span {
         Self { least, most: Lattice { x: a.x.max(b.x), z: a.z.max(b.z) } }
     }
 
-    fn and(self, other: Self) -> Self {
+    pub(super) fn and(self, other: Self) -> Self {
         let Self { least: a, most: b } = other;
         let least = Lattice { x: self.least.x.min(a.x), z: self.least.z.min(a.z) };
         Self { least, most: Lattice { x: self.most.x.max(b.x), z: self.most.z.max(b.z) } }
@@ -75,7 +75,7 @@ impl Span {
     }
 }
 
-const fn plus(at: Lattice, by: Lattice) -> Lattice {
+pub(super) const fn plus(at: Lattice, by: Lattice) -> Lattice {
     Lattice { x: at.x.saturating_add(by.x), z: at.z.saturating_add(by.z) }
 }
 
@@ -355,10 +355,19 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         if !memory.trail.is_whole() {
             return span;
         }
-        for (block, swath) in memory.ahead.swaths() {
-            if braking.stands() {
-                break;
+        let mut index = 0_usize;
+        while let Some((block, swath)) = memory.ahead.swath(index)
+            && !braking.stands()
+        {
+            if let Some(group) = memory.ahead.group(index)
+                && braking.passes_through(group.length, group.sheds)
+            {
+                span = span.and(group.span.moved(ends));
+                ends = plus(ends, group.end);
+                index = index.wrapping_add(Groups::<N>::SIZE);
+                continue;
             }
+            index = index.wrapping_add(1);
             let Some(later) = lookahead::as_motion(block) else {
                 if braking.passes(&block.work, self.optional_stop) {
                     continue;

@@ -13,9 +13,9 @@ pub(super) mod smooth;
 mod sweep;
 
 use super::margins::Margins;
-use super::swath::Swath;
+use super::swath::{Groups, Swath};
 use crate::block::{Block, Feed, Motion, Speed, Work};
-use crate::governor::square;
+use crate::governor::{UNLIMITED, square};
 use crate::math::to_u32;
 use heapless::Deque;
 use sweep::{Pass, Sweep};
@@ -30,6 +30,8 @@ struct Planned {
     margins: Margins,
     /// Under an S law: it is begun from standstill, whatever is before it.
     stands: bool,
+    /// Turning takes a part of the acceleration.
+    bent: bool,
     swath: Swath,
 }
 
@@ -40,6 +42,17 @@ impl Planned {
     const fn is_planned(&self) -> bool {
         self.entry != NOT_YET
     }
+
+    /// The largest squared speed, `room` before the end of its `motion`, from which `exit` can be met.
+    #[inline]
+    fn reachable(&self, motion: &Motion, room: u64, exit: u64) -> u64 {
+        if room == motion.length && !self.bent {
+            // what braking sheds on the whole of it is known
+            exit.saturating_add(self.swath.sheds).min(UNLIMITED)
+        } else {
+            motion.reachable(room, exit)
+        }
+    }
 }
 
 /// The blocks to come, at most `N`.
@@ -49,6 +62,7 @@ pub struct Lookahead<const N: usize> {
     /// Planned with.
     overrides: Overrides,
     sweep: Sweep,
+    groups: Groups<N>,
     blocks: Deque<Planned, N>,
 }
 
@@ -90,7 +104,12 @@ pub fn pace(motion: &Motion, overrides: Overrides) -> Speed {
 impl<const N: usize> Lookahead<N> {
     /// None known: all zero.
     pub const fn new() -> Self {
-        Self { blocks: Deque::new(), sweep: Sweep::NONE, overrides: Overrides { feed: 0, rapid: 0 } }
+        Self {
+            blocks: Deque::new(),
+            sweep: Sweep::NONE,
+            groups: Groups::new(),
+            overrides: Overrides { feed: 0, rapid: 0 },
+        }
     }
 
     /// Whether another block fits.
@@ -112,7 +131,11 @@ impl<const N: usize> Lookahead<N> {
     pub fn push(&mut self, block: Block) {
         // the caller asked `has_room`; a full queue would show as a missing block, so it must not be full
         let swath = Swath::of(&block);
-        let _ = self.blocks.push_back(Planned { block, entry: NOT_YET, margins: Margins::EMPTY, stands: false, swath });
+        let bent = as_motion(&block).is_some_and(Motion::is_bent);
+        let planned = Planned { block, entry: NOT_YET, margins: Margins::EMPTY, stands: false, bent, swath };
+        if self.blocks.push_back(planned).is_ok() {
+            self.groups.push(&swath);
+        }
     }
 
     /// The next block, with the squared speed at which it may be entered.
@@ -125,9 +148,14 @@ impl<const N: usize> Lookahead<N> {
         self.blocks.iter().map(|planned| &planned.block)
     }
 
-    /// The same with what they lead through.
-    pub(super) fn swaths(&self) -> impl Iterator<Item = (&Block, &Swath)> {
-        self.blocks.iter().map(|planned| (&planned.block, &planned.swath))
+    /// A block, counted from the nearest, with what it leads through.
+    pub(super) fn swath(&self, index: usize) -> Option<(&Block, &Swath)> {
+        self.blocks.get(index).map(|planned| (&planned.block, &planned.swath))
+    }
+
+    /// What the group of blocks leads through that begins with one, if one does.
+    pub(super) fn group(&self, index: usize) -> Option<&Swath> {
+        self.groups.at(index)
     }
 
     /// Sets the feed of all motions, but of threads.
@@ -142,14 +170,17 @@ impl<const N: usize> Lookahead<N> {
 
     /// Takes the next block away.
     pub fn skip(&mut self) {
-        let _ = self.blocks.pop_front();
-        self.sweep.skip();
+        if self.blocks.pop_front().is_some() {
+            self.sweep.skip();
+            self.groups.skip();
+        }
     }
 
     /// Forgets all.
     pub fn clear(&mut self) {
         self.blocks.clear();
         self.sweep = Sweep::NONE;
+        self.groups = Groups::new();
     }
 
     /// The squared speed at which `motion`, the one being executed, has to end.
@@ -183,7 +214,8 @@ impl<const N: usize> Lookahead<N> {
                 continue;
             };
             pass.costs(motion);
-            let entry = linear_entry(before, motion, exit.unwrap_or(square(motion.stop)), overrides);
+            let reachable = planned.reachable(motion, motion.length, exit.unwrap_or(square(motion.stop)));
+            let entry = linear_entry(before, motion, reachable, overrides);
             if entry == planned.entry && self.sweep.knew(here) {
                 self.sweep.finish();
                 return;
@@ -216,15 +248,15 @@ impl<const N: usize> Default for Lookahead<N> {
     }
 }
 
-/// Squared speed at which `motion`, behind one that is run at `before`, may be entered under the linear law so that its exit can
-/// be met.
-fn linear_entry(before: Option<Speed>, motion: &Motion, exit: u64, overrides: Overrides) -> u64 {
+/// Squared speed at which `motion`, behind one that is run at `before`, may be entered under the linear law where its exit can be
+/// met from `reachable`.
+fn linear_entry(before: Option<Speed>, motion: &Motion, reachable: u64, overrides: Overrides) -> u64 {
     let own = pace(motion, overrides);
     let most = match before {
         Some(before) => motion.joint.min(own).min(before),
         None => motion.start.min(own),
     };
-    motion.reachable(motion.length, exit).min(square(most))
+    reachable.min(square(most))
 }
 
 /// The motion of a block that moves.

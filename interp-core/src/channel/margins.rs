@@ -95,6 +95,12 @@ impl Margins {
         self.0.iter().fold(Speed::MAX, |least, margin| least.min(margin.cap))
     }
 
+    /// Whether there is none.
+    pub(super) const fn are_empty(&self) -> bool {
+        let [.., longest] = &self.0;
+        longest.length == 0
+    }
+
     /// Length of the longest, nm with 12 fraction bits.
     pub(super) fn longest(&self) -> u64 {
         let [.., longest] = &self.0;

@@ -127,9 +127,13 @@ impl<const N: usize> Lookahead<N> {
             let (exit, mut margins) = next.unwrap_or_else(|| (0, Margins::reserve(motion, ticks)));
             let entry = match before {
                 Some(before) if !planned.stands => {
-                    let way = margins.way(motion, motion.length, exit);
-                    margins.pass(motion.length);
-                    let entry = motion.reachable(way.room, way.exit).min(square(way.cap));
+                    let entry = if margins.are_empty() {
+                        planned.reachable(motion, motion.length, exit)
+                    } else {
+                        let way = margins.way(motion, motion.length, exit);
+                        margins.pass(motion.length);
+                        planned.reachable(motion, way.room, way.exit).min(square(way.cap))
+                    };
                     let own = own.unwrap_or_else(|| Paces::of(motion, overrides));
                     let hard = motion.joint.min(motion.limit);
                     if hard < before.most {
@@ -170,7 +174,7 @@ impl<const N: usize> Lookahead<N> {
         let before = before.filter(|before| !is_smoothed(before)).map(|before| pace(before, overrides));
         let next = paced(here.wrapping_add(1)).filter(|(_, next)| !is_smoothed(next));
         let exit = next.map_or(square(motion.stop), |(entry, _)| entry);
-        let entry = linear_entry(before, motion, exit, overrides);
+        let entry = linear_entry(before, motion, motion.reachable(motion.length, exit), overrides);
         if let Some(planned) = self.blocks.get_mut(here) {
             planned.entry = entry;
         }
