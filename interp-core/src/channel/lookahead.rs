@@ -10,7 +10,7 @@
 //! A pass over all blocks takes longer than a tick has; it is a [sweep] of some blocks a tick.
 
 pub(super) mod smooth;
-mod sweep;
+pub(super) mod sweep;
 
 use super::margins::Margins;
 use super::swath::{Groups, Swath};
@@ -196,9 +196,10 @@ impl<const N: usize> Lookahead<N> {
         self.blocks.front().is_some_and(|next| as_motion(&next.block).is_some() && next.is_planned())
     }
 
-    /// Plans the entry speeds anew as far as they change: a tick's part of it. `active` is the motion being executed.
-    pub fn plan(&mut self, active: Option<&Motion>, overrides: Overrides) {
-        let Some(mut pass) = self.set_out(overrides) else { return };
+    /// Plans the entry speeds anew as far as they change: a tick's part of it, so much `work`. `active` is the motion being
+    /// executed.
+    pub(super) fn plan(&mut self, active: Option<&Motion>, overrides: Overrides, work: u32) {
+        let Some(mut pass) = self.set_out(overrides, work) else { return };
         let overrides = self.overrides;
         while let Some(here) = self.sweep.next(&mut pass) {
             let next = self.blocks.get(here.wrapping_add(1));
@@ -225,11 +226,11 @@ impl<const N: usize> Lookahead<N> {
     }
 
     /// A tick's part of a sweep with these overrides, where one is under way or due.
-    fn set_out(&mut self, overrides: Overrides) -> Option<Pass> {
+    fn set_out(&mut self, overrides: Overrides, work: u32) -> Option<Pass> {
         let changed = overrides != self.overrides;
         // what is planned at its limits is planned by another law
         let law = changed && [overrides, self.overrides].iter().any(|those| those.feed == Overrides::AT_LIMIT.feed);
-        let pass = self.sweep.set_out(self.blocks.len(), changed, law);
+        let pass = self.sweep.set_out(self.blocks.len(), work, changed, law);
         if pass.is_some_and(|pass| pass.begins) {
             self.overrides = overrides;
         }

@@ -51,6 +51,7 @@ use fence::Fence;
 use hands::Hands;
 use lead::Lead;
 use lookahead::smooth::is_smoothed;
+use lookahead::sweep::{LESS_WORK, WORK};
 use lookahead::{Overrides, pace};
 pub use memory::Memory;
 use runner::{Runner, Sink};
@@ -380,6 +381,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         if self.window.ticks() > 0 {
             self.stand_late();
         }
+        let work = if self.fence.is_calm(self.tool()) { WORK } else { LESS_WORK };
         let Memory { ahead, trail } = self.memory.borrow_mut();
         let active = match &self.current {
             // what comes follows the motion begun last, wherever the tool is
@@ -394,8 +396,8 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         };
         let planned = self.crank.planned_with(self.overrides);
         match (self.window.ticks(), self.crank.drive) {
-            (0, _) | (_, Drive::Spindle(_) | Drive::Wheel(_)) => ahead.plan(active, planned),
-            (ticks, Drive::Time) => ahead.plan_smooth(active, planned, ticks),
+            (0, _) | (_, Drive::Spindle(_) | Drive::Wheel(_)) => ahead.plan(active, planned, work),
+            (ticks, Drive::Time) => ahead.plan_smooth(active, planned, work, ticks),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Look-ahead for the lead of an S law: with margins around the joints, and from rest to rest.
 
-use super::{Lookahead, Overrides, as_motion, linear_entry, pace};
+use super::{Lookahead, Overrides, Planned, as_motion, linear_entry, pace};
 use crate::block::Work;
 use crate::block::{Feed, Motion, Speed};
 use crate::channel::margins::Margins;
@@ -29,6 +29,16 @@ struct Paces {
 impl Paces {
     fn of(motion: &Motion, overrides: Overrides) -> Self {
         Self { most: most(motion), pace: pace(motion, overrides) }
+    }
+}
+
+impl Planned {
+    /// What a smoothed motion before it keeps at its end: a squared speed and margins.
+    fn kept(&self) -> (u64, Margins) {
+        match as_motion(&self.block) {
+            Some(motion) if !self.stands && is_smoothed(motion) => (self.entry, self.margins),
+            _ => (0, Margins::EMPTY),
+        }
     }
 }
 
@@ -85,10 +95,7 @@ impl<const N: usize> Lookahead<N> {
     /// What `motion`, behind which comes block `index`, keeps at its end: a squared speed and margins.
     pub(in crate::channel) fn leave(&self, index: usize, motion: &Motion, ticks: u8) -> (u64, Margins) {
         match self.blocks.get(index) {
-            Some(next) if next.is_planned() => match as_motion(&next.block) {
-                Some(after) if !next.stands && is_smoothed(after) => (next.entry, next.margins),
-                _ => (0, Margins::EMPTY),
-            },
+            Some(next) if next.is_planned() => next.kept(),
             _ => (0, Margins::reserve(motion, ticks)),
         }
     }
@@ -98,28 +105,31 @@ impl<const N: usize> Lookahead<N> {
     /// What no override changes, the speeds of joints and the limits of the machine, has margins of its own at any
     /// override: so braking as hard as allowed meets them, whatever the operator does. Those of the programmed feeds come
     /// besides; where an override makes them suddenly lower they are approached gradually.
-    pub(in crate::channel) fn plan_smooth(&mut self, active: Option<&Motion>, overrides: Overrides, ticks: u8) {
-        let Some(mut pass) = self.set_out(overrides) else { return };
+    pub(in crate::channel) fn plan_smooth(
+        &mut self,
+        active: Option<&Motion>,
+        overrides: Overrides,
+        work: u32,
+        ticks: u8,
+    ) {
+        let Some(mut pass) = self.set_out(overrides, work) else { return };
         let overrides = self.overrides;
-        let mut of_next: Option<Paces> = None;
+        let mut of_before: Option<Paces> = None;
+        let mut next = self.blocks.get(self.sweep.left()).map(Planned::kept);
         while let Some(here) = self.sweep.next(&mut pass) {
             let before = match here.checked_sub(1) {
                 Some(before) => self.blocks.get(before).and_then(|planned| as_motion(&planned.block)),
                 None => active,
             };
             let before = before.filter(|motion| is_smoothed(motion)).map(|motion| Paces::of(motion, overrides));
-            let own = core::mem::replace(&mut of_next, before);
-            let next = self.blocks.get(here.wrapping_add(1));
-            let next = next.map(|next| match as_motion(&next.block) {
-                Some(after) if !next.stands && is_smoothed(after) => (next.entry, next.margins),
-                _ => (0, Margins::EMPTY),
-            });
+            let own = core::mem::replace(&mut of_before, before);
             let known = self.sweep.knew(here);
             let Some(planned) = self.blocks.get_mut(here) else { return };
             let motion = match &planned.block.work {
                 Work::Motion(motion) if is_smoothed(motion) => motion,
                 _ => {
                     self.plan_paced(here, active, overrides);
+                    next = Some((0, Margins::EMPTY));
                     continue;
                 }
             };
@@ -154,6 +164,7 @@ impl<const N: usize> Lookahead<N> {
                 return;
             }
             (planned.entry, planned.margins) = (entry, margins);
+            next = Some((entry, margins));
         }
     }
 

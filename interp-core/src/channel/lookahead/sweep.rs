@@ -10,9 +10,12 @@
 
 use crate::block::{Curve, Motion};
 
-/// What a sweep does in a tick: a line takes one of it. So a new block has come to act after three ticks and a half at most
-/// where all 64 have to be planned, and behind a sweep that is under way after twice that.
-const WORK: u32 = 20;
+/// What a sweep does in a tick: a line takes one of it. So a new block acts after four ticks at most where all 64 have to be
+/// planned, and behind a sweep that is under way after eight.
+pub(in crate::channel) const WORK: u32 = 16;
+
+/// The same near a soft limit, where a tick has more to do.
+pub(in crate::channel) const LESS_WORK: u32 = 8;
 
 /// What an arc takes more than a line: sines and roots.
 const ROUND: u32 = 3;
@@ -59,9 +62,9 @@ impl Sweep {
     /// Of no block: all zero.
     pub(super) const NONE: Self = Self { left: 0, known: 0, end: 0, settled: 0, hurries: false };
 
-    /// A tick's part of the one that is under way or due, of so many blocks. One is due where the overrides have `changed`, too; with
+    /// A tick's part, so much `work`, of the one that is under way or due, of so many blocks. One is due where the overrides have `changed`, too; with
     /// another law all is planned at once.
-    pub(super) fn set_out(&mut self, blocks: usize, changed: bool, law: bool) -> Option<Pass> {
+    pub(super) fn set_out(&mut self, blocks: usize, work: u32, changed: bool, law: bool) -> Option<Pass> {
         let at_once = self.hurries || law;
         let begins = at_once || self.left == 0;
         if begins {
@@ -71,7 +74,7 @@ impl Sweep {
             let known = if at_once || changed { 0 } else { self.settled };
             *self = Self { left: blocks, known, end: blocks, hurries: false, ..*self };
         }
-        Some(Pass { work: if at_once { u32::MAX } else { WORK }, begins })
+        Some(Pass { work: if at_once { u32::MAX } else { work }, begins })
     }
 
     /// The block to be planned next, if any in this tick.
@@ -83,6 +86,11 @@ impl Sweep {
         pass.work = pass.work.checked_sub(1)?;
         self.left = here;
         Some(here)
+    }
+
+    /// Blocks, from the nearest, that it has still to come to.
+    pub(super) const fn left(&self) -> usize {
+        self.left
     }
 
     /// Whether a block was planned before: if it stays the same, so do all before it.
@@ -141,7 +149,7 @@ mod tests {
         let mut sweep = Sweep::NONE;
         let (mut seen, mut ticks) = (0_usize, 0_u32);
         while !sweep.is_over(50) {
-            let mut pass = sweep.set_out(50, false, false).unwrap();
+            let mut pass = sweep.set_out(50, WORK, false, false).unwrap();
             assert_eq!(pass.begins, ticks == 0);
             while let Some(here) = sweep.next(&mut pass) {
                 seen += 1;
@@ -150,12 +158,12 @@ mod tests {
             }
             ticks += 1;
         }
-        assert_eq!((seen, ticks), (50, 3));
-        assert_eq!(sweep.set_out(50, false, false), None);
+        assert_eq!((seen, ticks), (50, 4));
+        assert_eq!(sweep.set_out(50, WORK, false, false), None);
         // three are taken away and five come
         (0..3).for_each(|_| sweep.skip());
         assert_eq!(sweep.pending(0, 52), Some(47));
-        let mut pass = sweep.set_out(52, false, false).unwrap();
+        let mut pass = sweep.set_out(52, WORK, false, false).unwrap();
         let (_, here) = (0..5).map(|n| (n, sweep.next(&mut pass))).last().unwrap();
         assert_eq!(here, Some(47));
         assert!(!sweep.knew(47) && sweep.knew(46));
@@ -167,7 +175,7 @@ mod tests {
     fn what_hurries_is_planned_in_one_tick() {
         let mut sweep = Sweep::NONE;
         sweep.hurry();
-        let mut pass = sweep.set_out(64, false, false).unwrap();
+        let mut pass = sweep.set_out(64, WORK, false, false).unwrap();
         while sweep.next(&mut pass).is_some() {}
         assert!(sweep.is_over(64));
     }
