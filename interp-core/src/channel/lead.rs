@@ -14,6 +14,7 @@ use super::cruise::Cruise;
 use super::lookahead::smooth::{is_smoothed, most};
 use super::lookahead::{Lookahead, Overrides, pace};
 use super::margins::Margins;
+use super::swath::Groups;
 use super::{Channel, Current, State};
 use crate::block::{Motion, Speed};
 use crate::config::TICK_CLOCKS;
@@ -121,6 +122,14 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let reserve = Margins::reserve(last, self.window.ticks()).longest();
         let (mut left, mut index) = (here.length.saturating_sub(done), first);
         while left < reserve && index < pending {
+            let behind = index.wrapping_add(Groups::<N>::SIZE);
+            if behind <= pending
+                && let Some(group) = ahead.group(index)
+            {
+                left = left.saturating_add(group.length);
+                index = behind;
+                continue;
+            }
             let Some(motion) = ahead.motion(index) else { return };
             left = left.saturating_add(motion.length);
             index = index.wrapping_add(1);

@@ -10,9 +10,9 @@
 
 use crate::block::{Curve, Motion};
 
-/// What a sweep does in a tick: a line takes one of it. So a new block acts after four ticks at most where all 64 have to be
-/// planned, and behind a sweep that is under way after eight.
-pub(in crate::channel) const WORK: u32 = 16;
+/// What a sweep does in a tick: a line takes one of it. So a new block acts after six ticks at most where all 64 have to be
+/// planned, and behind a sweep that is under way after twelve.
+pub(in crate::channel) const WORK: u32 = 12;
 
 /// The same near a soft limit, where a tick has more to do.
 pub(in crate::channel) const LESS_WORK: u32 = 8;
@@ -158,7 +158,7 @@ mod tests {
             }
             ticks += 1;
         }
-        assert_eq!((seen, ticks), (50, 4));
+        assert_eq!((seen, ticks), (50, 5));
         assert_eq!(sweep.set_out(50, WORK, false, false), None);
         // three are taken away and five come
         (0..3).for_each(|_| sweep.skip());
