@@ -18,7 +18,7 @@ use crate::block::{Block, Feed, Motion, Speed, Work};
 use crate::governor::{UNLIMITED, square};
 use crate::math::to_u32;
 use heapless::Deque;
-use sweep::{Pass, Sweep};
+use sweep::{LINEAR, Pass, Sweep};
 
 /// A block to come.
 #[derive(Copy, Clone, Debug)]
@@ -199,7 +199,7 @@ impl<const N: usize> Lookahead<N> {
     /// Plans the entry speeds anew as far as they change: a tick's part of it, so much `work`. `active` is the motion being
     /// executed.
     pub(super) fn plan(&mut self, active: Option<&Motion>, overrides: Overrides, work: u32) {
-        let Some(mut pass) = self.set_out(overrides, work) else { return };
+        let Some(mut pass) = self.set_out(overrides, work.saturating_mul(LINEAR)) else { return };
         let overrides = self.overrides;
         while let Some(here) = self.sweep.next(&mut pass) {
             let next = self.blocks.get(here.wrapping_add(1));

@@ -10,12 +10,15 @@
 
 use crate::block::{Curve, Motion};
 
-/// What a sweep does in a tick: a line takes one of it. So a new block acts after six ticks at most where all 64 have to be
-/// planned, and behind a sweep that is under way after twelve.
+/// What a sweep does in a tick under an S law: a line takes one of it. So a new block acts after six ticks at most where 72 have
+/// to be planned, and behind a sweep that is under way after twelve.
 pub(in crate::channel) const WORK: u32 = 12;
 
 /// The same near a soft limit, where a tick has more to do.
 pub(in crate::channel) const LESS_WORK: u32 = 8;
+
+/// How many times as many blocks fit in a tick under the linear law, which has no margins.
+pub(super) const LINEAR: u32 = 3;
 
 /// What an arc takes more than a line: sines and roots.
 const ROUND: u32 = 3;
