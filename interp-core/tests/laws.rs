@@ -415,7 +415,7 @@ fn a_reset_at_any_tick_brakes_and_forgets() {
     }
 }
 
-/// A curve in short lines, that looking ahead over 64 blocks keeps slow: the S laws don't stop in it.
+/// A curve in short lines, that looking ahead over 72 blocks keeps slow: the S laws don't stop in it.
 #[test]
 fn many_short_lines_run_nearly_as_fast_as_under_the_linear_law() {
     let pieces = [(Piece::Run(50, 3, 800), 5000)];

@@ -35,10 +35,11 @@ enum { HANDLERS = 32, DEPTH = 32, NONE = -1 };
 
 static struct { char name[64]; uint32_t start, end; } handlers[HANDLERS];
 static int handler_count;
-/* `returning`: its last instruction was a return; the next one, at `behind` or elsewhere, tells whether it was taken. */
-static struct { int handler; uint64_t count; bool returning; uint32_t behind; } running[DEPTH];
+static struct { int handler; uint64_t count; } running[DEPTH];
 static int depth;
 static uint64_t anomalies;
+static bool returning;
+static uint32_t behind;
 static FILE *out;
 
 /* An instruction as it was translated, and how often the present call of the handler looked into has executed it. */
@@ -88,6 +89,7 @@ static bool is_return(uint16_t first, uint16_t second)
 
 static void leave(void)
 {
+    returning = false;
     depth--;
     fprintf(out, "%s %llu\n", handlers[running[depth].handler].name, (unsigned long long)running[depth].count);
     if (running[depth].handler == looked_into)
@@ -98,22 +100,14 @@ static void executed(unsigned cpu, void *data)
 {
     struct place *p = data;
     (void)cpu;
-    if (p->entry) {
-        /* it may have come between a return and what is behind it; but none preempts itself */
-        int again = depth;
-        while (again > 0 && running[again - 1].handler != p->body)
-            again--;
-        while (again > 0 && depth >= again && running[depth - 1].returning)
+    if (returning) {
+        if (p->at == behind)
+            returning = false;
+        else
             leave();
-    } else {
-        while (depth > 0 && running[depth - 1].returning && p->at != running[depth - 1].behind)
-            leave();
-        if (depth > 0)
-            running[depth - 1].returning = false;
     }
     if (p->entry) {
         if (depth < DEPTH) {
-            running[depth].returning = false;
             running[depth].handler = p->body;
             running[depth].count = 0;
             depth++;
@@ -129,8 +123,8 @@ static void executed(unsigned cpu, void *data)
     if (p->body != NONE && p->body != running[depth - 1].handler)
         anomalies++;
     if (p->returns && p->body == running[depth - 1].handler) {
-        running[depth - 1].returning = true;
-        running[depth - 1].behind = p->at + p->size;
+        returning = true;
+        behind = p->at + p->size;
     }
 }
 
@@ -165,7 +159,7 @@ static void ended(plugin_id id, void *data)
 {
     (void)id;
     (void)data;
-    while (depth > 0 && running[depth - 1].returning)
+    if (returning)
         leave();
     for (size_t n = 0; n < costliest.count; n++)
         fprintf(out, "at %u %u\n", (unsigned)costliest.places[n]->at, (unsigned)costliest.times[n]);
