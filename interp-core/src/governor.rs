@@ -139,6 +139,11 @@ impl Motion {
         }
     }
 
+    /// Whether turning takes a part of the acceleration that matters.
+    pub(crate) fn is_bent(&self) -> bool {
+        self.bend().is_some()
+    }
+
     /// An acceleration that it brakes with at least, from any speed to standstill: on an arc turning takes all of it at first and
     /// none at the end, which leaves 2 / pi of it over the way.
     pub(crate) fn brakes(&self) -> u64 {

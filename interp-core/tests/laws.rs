@@ -135,7 +135,7 @@ fn run(machine: Machine, works: Vec<Work>, deeds: &[(usize, Deed)]) -> Run {
 
 /// The same, with so many blocks arrived at each tick.
 fn run_late(machine: Machine, works: Vec<Work>, deeds: &[(usize, Deed)], arrived: impl Fn(usize) -> usize) -> Run {
-    let mut channel = Channel::<64>::new(&machine, interp_core::units::Lattice::default());
+    let mut channel = Channel::<72>::new(&machine, interp_core::units::Lattice::default());
     let mut given = 0;
     let (mut advance, mut percent) = (Vec::new(), Vec::new());
     channel.start();
@@ -415,7 +415,7 @@ fn a_reset_at_any_tick_brakes_and_forgets() {
     }
 }
 
-/// A curve in short lines, that looking ahead over 64 blocks keeps slow: the S laws don't stop in it.
+/// A curve in short lines, that looking ahead over 72 blocks keeps slow: the S laws don't stop in it.
 #[test]
 fn many_short_lines_run_nearly_as_fast_as_under_the_linear_law() {
     let pieces = [(Piece::Run(50, 3, 800), 5000)];
@@ -431,7 +431,7 @@ fn many_short_lines_run_nearly_as_fast_as_under_the_linear_law() {
 #[test]
 fn the_law_changes_at_standstill_only() {
     let linear = machine(SpeedLaw::Linear);
-    let mut channel = Channel::<64>::new(&linear, interp_core::units::Lattice::default());
+    let mut channel = Channel::<72>::new(&linear, interp_core::units::Lattice::default());
     let works = blocks(&linear, &[(Piece::Line(0, 2_000), 3000)]);
     let mut given = works.iter().map(|work| Block { line: 1, work: *work });
     channel.start();

@@ -47,7 +47,7 @@ use refusal::Refusal;
 use rehearsal::Act;
 
 /// Blocks that a lathe looks ahead. The same on every board and on the desktop, since the pulses depend on it.
-pub const LOOKAHEAD: usize = 64;
+pub const LOOKAHEAD: usize = 72;
 
 /// A foreground's blocks, to come and gone.
 pub type Memory = channel::Memory<LOOKAHEAD>;

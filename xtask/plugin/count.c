@@ -1,9 +1,10 @@
 /* Counts the instructions that interrupt handlers execute, in QEMU (TCG plugin, API 1).
  *
- *   -plugin count.so,out=FILE,h=NAME:START:END,h=...        (addresses in hex, END behind the last byte)
+ *   -plugin count.so,out=FILE,h=NAME:START:END,h=...,worst=NAME        (addresses in hex, END behind the last byte)
  *
  * FILE gets a line `NAME COUNT` whenever a handler returns: the instructions between its entry and its return, both
- * included, callees included, handlers that preempted it not.
+ * included, callees included, handlers that preempted it not. At its end there are the instructions of the costliest call
+ * of the handler `worst` names, as lines `at ADDRESS TIMES`.
  *
  * A handler begins when its first instruction is executed. A return instruction in its own body ends it, unless the
  * next instruction executed is the one behind it (a return whose condition failed): a handler is entered by the
@@ -41,8 +42,42 @@ static bool returning;
 static uint32_t behind;
 static FILE *out;
 
-/* An instruction as it was translated. */
-struct place { uint32_t at, size; int body; bool entry, returns; };
+/* An instruction as it was translated, and how often the present call of the handler looked into has executed it. */
+struct place { uint32_t at, size; int body; bool entry, returns; uint32_t times; };
+
+/* The instructions of a call. */
+struct call { struct place **places; uint32_t *times; size_t count, room; };
+
+static int looked_into = NONE;
+static uint64_t most;
+static struct call present, costliest;
+
+static void add(struct call *call, struct place *place, uint32_t times)
+{
+    if (call->count == call->room) {
+        call->room = call->room ? call->room * 2 : 4096;
+        call->places = realloc(call->places, call->room * sizeof *call->places);
+        call->times = realloc(call->times, call->room * sizeof *call->times);
+        if (!call->places || !call->times)
+            abort();
+    }
+    call->places[call->count] = place;
+    call->times[call->count++] = times;
+}
+
+/* The present call of the handler looked into is over. */
+static void look(uint64_t count)
+{
+    if (count > most) {
+        most = count;
+        costliest.count = 0;
+        for (size_t n = 0; n < present.count; n++)
+            add(&costliest, present.places[n], present.places[n]->times);
+    }
+    for (size_t n = 0; n < present.count; n++)
+        present.places[n]->times = 0;
+    present.count = 0;
+}
 
 static bool is_return(uint16_t first, uint16_t second)
 {
@@ -57,11 +92,13 @@ static void leave(void)
     returning = false;
     depth--;
     fprintf(out, "%s %llu\n", handlers[running[depth].handler].name, (unsigned long long)running[depth].count);
+    if (running[depth].handler == looked_into)
+        look(running[depth].count);
 }
 
 static void executed(unsigned cpu, void *data)
 {
-    const struct place *p = data;
+    struct place *p = data;
     (void)cpu;
     if (returning) {
         if (p->at == behind)
@@ -81,6 +118,8 @@ static void executed(unsigned cpu, void *data)
     if (depth == 0)
         return;
     running[depth - 1].count++;
+    if (running[depth - 1].handler == looked_into && !p->times++)
+        add(&present, p, 0);
     if (p->body != NONE && p->body != running[depth - 1].handler)
         anomalies++;
     if (p->returns && p->body == running[depth - 1].handler) {
@@ -122,6 +161,8 @@ static void ended(plugin_id id, void *data)
     (void)data;
     if (returning)
         leave();
+    for (size_t n = 0; n < costliest.count; n++)
+        fprintf(out, "at %u %u\n", (unsigned)costliest.places[n]->at, (unsigned)costliest.times[n]);
     fprintf(out, "anomalies %llu\n", (unsigned long long)anomalies);
     fclose(out);
 }
@@ -137,6 +178,10 @@ int qemu_plugin_install(plugin_id id, const void *info, int argc, char **argv)
                    && sscanf(argv[n] + 2, "%63[^:]:%x:%x", handlers[handler_count].name,
                              &handlers[handler_count].start, &handlers[handler_count].end) == 3) {
             handler_count++;
+        } else if (!strncmp(argv[n], "worst=", 6)) {
+            for (int h = 0; h < handler_count; h++)
+                if (!strcmp(argv[n] + 6, handlers[h].name))
+                    looked_into = h;
         } else {
             fprintf(stderr, "count: `%s` is not understood\n", argv[n]);
             return 1;

@@ -3,6 +3,7 @@
 //! runs.
 
 mod book;
+mod cases;
 mod compare;
 mod desktop;
 mod emulate;

@@ -17,6 +17,7 @@
 
 use core::borrow::BorrowMut;
 
+use super::swath::{Groups, shed};
 use super::{Active, Channel, Current, Memory, State, lookahead};
 use crate::block::{Motion, Speed, Work};
 use crate::drive::Drive;
@@ -37,7 +38,7 @@ pub(super) struct Span {
 }
 
 impl Span {
-    const fn at(place: Lattice) -> Self {
+    pub(super) const fn at(place: Lattice) -> Self {
         Self { least: place, most: place }
     }
 
@@ -46,7 +47,7 @@ impl Span {
         Self { least, most: Lattice { x: a.x.max(b.x), z: a.z.max(b.z) } }
     }
 
-    fn and(self, other: Self) -> Self {
+    pub(super) fn and(self, other: Self) -> Self {
         let Self { least: a, most: b } = other;
         let least = Lattice { x: self.least.x.min(a.x), z: self.least.z.min(a.z) };
         Self { least, most: Lattice { x: self.most.x.max(b.x), z: self.most.z.max(b.z) } }
@@ -74,12 +75,12 @@ impl Span {
     }
 }
 
-const fn plus(at: Lattice, by: Lattice) -> Lattice {
+pub(super) const fn plus(at: Lattice, by: Lattice) -> Lattice {
     Lattice { x: at.x.saturating_add(by.x), z: at.z.saturating_add(by.z) }
 }
 
 /// Where a motion ends, from where it begins.
-const fn end(motion: &Motion) -> Lattice {
+pub(super) const fn end(motion: &Motion) -> Lattice {
     let (x, z) = motion.curve.end();
     Lattice { x, z }
 }
@@ -91,7 +92,7 @@ const fn begin(at: Lattice, motion: &Motion) -> Lattice {
 }
 
 /// All places of a motion that begins at `from`.
-fn whole(from: Lattice, motion: &Motion) -> Span {
+pub(super) fn whole(from: Lattice, motion: &Motion) -> Span {
     let ((x, z), (most_x, most_z)) = motion.curve.extent();
     Span { least: Lattice { x, z }, most: Lattice { x: most_x, z: most_z } }.moved(from)
 }
@@ -130,7 +131,7 @@ impl Braking {
             let speed = rest.max(motion.start).saturating_add(self.gains.unwrap_or(0));
             (self.way, self.squared) = (speed.into(), square(speed));
         }
-        let shed = motion.brakes().saturating_mul(2).max(1);
+        let shed = shed(motion);
         let brakes = room.saturating_sub(self.way);
         let most = brakes.saturating_mul(shed);
         if self.way <= room && self.squared <= most {
@@ -140,6 +141,20 @@ impl Braking {
         }
         (self.way, self.squared) = (self.way.saturating_sub(room), self.squared.saturating_sub(most));
         room
+    }
+
+    /// Goes on through all of a motion, from its start, that sheds so much; false, and nothing changes, where it may stand in it.
+    #[inline]
+    const fn passes_through(&mut self, length: u64, sheds: u64) -> bool {
+        if self.way > length {
+            self.way = self.way.wrapping_sub(length);
+            return true;
+        }
+        let passes = self.way == 0 && self.squared > sheds && !self.begins;
+        if passes {
+            self.squared = self.squared.wrapping_sub(sheds);
+        }
+        passes
     }
 
     /// Comes to what is no motion. Whether the path may lead past it before it stands.
@@ -296,19 +311,26 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         if braking.stands() {
             return span;
         }
-        let mut see = |at: Lattice, all: Span, motion: &Motion, room: u64, braking: &mut Braking| {
+        let see = |span: Span, at: Lattice, all: Span, motion: &Motion, room: u64, braking: &mut Braking| {
             let covered = braking.through(motion, self.rest, room);
             // no place of a motion is farther off than its length
-            span = span.and(if covered >= motion.length {
+            span.and(if covered >= motion.length {
                 all
             } else {
                 let (x, z) = self.hands.pulses_of(covered);
                 all.near(at, (x.saturating_add(ROUGH), z.saturating_add(ROUGH)))
-            });
+            })
         };
         let (mut begins, mut ends) = (self.position, self.position);
         if let Current::Motion(active) = &self.current {
-            see(self.position, active.left(back, self.position), &active.motion, self.room(back), &mut braking);
+            span = see(
+                span,
+                self.position,
+                active.left(back, self.position),
+                &active.motion,
+                self.room(back),
+                &mut braking,
+            );
             (begins, ends) = (active.from, plus(active.from, end(&active.motion)));
         }
         if back {
@@ -318,7 +340,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
                 }
                 let at = begins;
                 begins = begin(at, earlier);
-                see(at, whole(begins, earlier), earlier, earlier.length, &mut braking);
+                span = see(span, at, whole(begins, earlier), earlier, earlier.length, &mut braking);
             }
             return span;
         }
@@ -326,21 +348,39 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             if braking.stands() {
                 break;
             }
-            see(ends, whole(ends, later), later, later.length, &mut braking);
+            span = see(span, ends, whole(ends, later), later, later.length, &mut braking);
             ends = plus(ends, end(later));
         }
         // what follows a gap in the trail is not next
-        let ahead = memory.ahead.blocks().take_while(|_| memory.trail.is_whole());
-        for block in ahead {
-            if braking.stands() {
-                break;
+        if !memory.trail.is_whole() {
+            return span;
+        }
+        let mut index = 0_usize;
+        while let Some((block, swath)) = memory.ahead.swath(index)
+            && !braking.stands()
+        {
+            if let Some(group) = memory.ahead.group(index)
+                && braking.passes_through(group.length, group.sheds)
+            {
+                span = span.and(group.span.moved(ends));
+                ends = plus(ends, group.end);
+                index = index.wrapping_add(Groups::<N>::SIZE);
+                continue;
             }
-            if let Some(later) = lookahead::as_motion(block) {
-                see(ends, whole(ends, later), later, later.length, &mut braking);
-                ends = plus(ends, end(later));
-            } else if !braking.passes(&block.work, self.optional_stop) {
+            index = index.wrapping_add(1);
+            let Some(later) = lookahead::as_motion(block) else {
+                if braking.passes(&block.work, self.optional_stop) {
+                    continue;
+                }
                 break;
-            }
+            };
+            let all = swath.span.moved(ends);
+            span = if braking.passes_through(swath.length, swath.sheds) {
+                span.and(all)
+            } else {
+                see(span, ends, all, later, swath.length, &mut braking)
+            };
+            ends = plus(ends, swath.end);
         }
         span
     }

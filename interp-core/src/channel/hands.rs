@@ -97,8 +97,13 @@ impl AxisHand {
     /// Whole pulses of a length, nm with 12 fraction bits, and one more.
     fn pulses_of(&self, length: u64) -> i32 {
         let nm = (length >> FRACTION_BITS).saturating_mul(self.pulse.denominator().into());
-        let pulses = nm.checked_div(self.pulse.numerator().into()).unwrap_or(0).min(u64::from(u32::MAX >> 2));
-        to_u32(pulses).cast_signed().saturating_add(1)
+        let numerator = self.pulse.numerator();
+        let pulses = match u32::try_from(nm) {
+            // the usual case, in one instruction
+            Ok(nm) => nm.checked_div(numerator).unwrap_or(0).into(),
+            Err(_) => nm.checked_div(numerator.into()).unwrap_or(0),
+        };
+        to_u32(pulses.min(u64::from(u32::MAX >> 2))).cast_signed().saturating_add(1)
     }
 
     /// The part of a program's speed that is left beside it, 16 fraction bits.

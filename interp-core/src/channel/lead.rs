@@ -14,6 +14,7 @@ use super::cruise::Cruise;
 use super::lookahead::smooth::{is_smoothed, most};
 use super::lookahead::{Lookahead, Overrides, pace};
 use super::margins::Margins;
+use super::swath::Groups;
 use super::{Channel, Current, State};
 use crate::block::{Motion, Speed};
 use crate::config::TICK_CLOCKS;
@@ -106,20 +107,36 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         self.speed = if self.window.is_drained() { 0 } else { to_u32(by).max(1) };
     }
 
-    /// Whether a block that comes now is too late to be planned with: the lead is so near the end of what is known that
-    /// the margins of a joint there might not be kept.
-    pub(super) fn is_late(&self) -> bool {
+    /// Where a block is too late to be planned with, it is begun from standstill: the lead, which keeps to what was planned before
+    /// it came, is so near the end of that that the margins of the joint there might not be kept.
+    pub(super) fn stand_late(&mut self) {
         let ahead = &self.memory.borrow().ahead;
-        let Some(mut last) = ahead_of(&self.current, ahead, self.lead.block) else { return false };
-        let mut left = last.length.saturating_sub(self.lead.done);
-        let mut index = self.lead.block;
-        while index < ahead.len() {
-            let Some(motion) = ahead.motion(index) else { return false };
-            last = motion;
+        let (first, done) = (self.lead.block, self.lead.done);
+        let Some(pending) = ahead.pending(first) else { return };
+        let Some(here) = ahead_of(&self.current, ahead, first) else { return };
+        let last = match pending.checked_sub(1) {
+            Some(last) if last >= first => ahead.motion(last),
+            _ => Some(here),
+        };
+        let Some(last) = last else { return };
+        let reserve = Margins::reserve(last, self.window.ticks()).longest();
+        let (mut left, mut index) = (here.length.saturating_sub(done), first);
+        while left < reserve && index < pending {
+            let behind = index.wrapping_add(Groups::<N>::SIZE);
+            if behind <= pending
+                && let Some(group) = ahead.group(index)
+            {
+                left = left.saturating_add(group.length);
+                index = behind;
+                continue;
+            }
+            let Some(motion) = ahead.motion(index) else { return };
             left = left.saturating_add(motion.length);
             index = index.wrapping_add(1);
         }
-        left < Margins::reserve(last, self.window.ticks()).longest()
+        if left < reserve {
+            self.memory.borrow_mut().ahead.stand_at(pending);
+        }
     }
 
     /// The lead's advance in this tick.

@@ -6,34 +6,63 @@
 //!
 //! Braking as hard as allowed from any planned state meets every joint; a change of the override therefore needs no
 //! more than a new pass, and a feed that is suddenly too high is approached gradually.
+//!
+//! A pass over all blocks takes longer than a tick has; it is a [sweep] of some blocks a tick.
 
 pub(super) mod smooth;
+pub(super) mod sweep;
 
 use super::margins::Margins;
+use super::swath::{Groups, Swath};
 use crate::block::{Block, Feed, Motion, Speed, Work};
-use crate::governor::square;
+use crate::governor::{UNLIMITED, square};
+use crate::math::to_u32;
 use heapless::Deque;
+use sweep::{LINEAR, Pass, Sweep};
 
 /// A block to come.
 #[derive(Copy, Clone, Debug)]
 struct Planned {
     block: Block,
-    /// Squared speed at which it is to be entered.
+    /// Squared speed at which it is to be entered; [`NOT_YET`] planned.
     entry: u64,
     /// Under an S law: margins before its start.
     margins: Margins,
     /// Under an S law: it is begun from standstill, whatever is before it.
     stands: bool,
+    /// Turning takes a part of the acceleration.
+    bent: bool,
+    swath: Swath,
+}
+
+/// The entry of a block that no sweep has come to. Whatever leads up to it ends as if it were not there.
+const NOT_YET: u64 = u64::MAX;
+
+impl Planned {
+    const fn is_planned(&self) -> bool {
+        self.entry != NOT_YET
+    }
+
+    /// The largest squared speed, `room` before the end of its `motion`, from which `exit` can be met.
+    #[inline]
+    fn reachable(&self, motion: &Motion, room: u64, exit: u64) -> u64 {
+        if room == motion.length && !self.bent {
+            // what braking sheds on the whole of it is known
+            exit.saturating_add(self.swath.sheds).min(UNLIMITED)
+        } else {
+            motion.reachable(room, exit)
+        }
+    }
 }
 
 /// The blocks to come, at most `N`.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub struct Lookahead<const N: usize> {
-    /// How many at the back have not been planned.
-    fresh: usize,
     /// Planned with.
     overrides: Overrides,
+    sweep: Sweep,
+    groups: Groups<N>,
     blocks: Deque<Planned, N>,
 }
 
@@ -57,8 +86,11 @@ impl Overrides {
 /// Speed of a motion under overrides; that of one that follows the spindle is not known, and planned with its limit.
 pub fn pace(motion: &Motion, overrides: Overrides) -> Speed {
     let percent = |speed: Speed, percent: u16| {
-        let scaled = u64::from(speed).wrapping_mul(u64::from(percent)) / 100;
-        crate::math::to_u32(scaled).min(motion.limit)
+        // without a division of 64 bits
+        let (hundreds, rest) = (speed / 100, speed % 100);
+        let percent = u32::from(percent);
+        let part = u64::from(rest.wrapping_mul(percent) / 100);
+        to_u32(u64::from(hundreds).wrapping_mul(percent.into()).wrapping_add(part)).min(motion.limit)
     };
     match motion.feed {
         Feed::PerTurn(_) | Feed::Thread(..) => motion.limit,
@@ -72,7 +104,12 @@ pub fn pace(motion: &Motion, overrides: Overrides) -> Speed {
 impl<const N: usize> Lookahead<N> {
     /// None known: all zero.
     pub const fn new() -> Self {
-        Self { blocks: Deque::new(), fresh: 0, overrides: Overrides { feed: 0, rapid: 0 } }
+        Self {
+            blocks: Deque::new(),
+            sweep: Sweep::NONE,
+            groups: Groups::new(),
+            overrides: Overrides { feed: 0, rapid: 0 },
+        }
     }
 
     /// Whether another block fits.
@@ -93,19 +130,32 @@ impl<const N: usize> Lookahead<N> {
     /// Adds a block; it is planned by the next [`plan`](Self::plan).
     pub fn push(&mut self, block: Block) {
         // the caller asked `has_room`; a full queue would show as a missing block, so it must not be full
-        if self.blocks.push_back(Planned { block, entry: 0, margins: Margins::EMPTY, stands: false }).is_ok() {
-            self.fresh = self.fresh.wrapping_add(1);
+        let swath = Swath::of(&block);
+        let bent = as_motion(&block).is_some_and(Motion::is_bent);
+        let planned = Planned { block, entry: NOT_YET, margins: Margins::EMPTY, stands: false, bent, swath };
+        if self.blocks.push_back(planned).is_ok() {
+            self.groups.push(&swath);
         }
     }
 
     /// The next block, with the squared speed at which it may be entered.
     pub fn next(&self) -> Option<(&Block, u64)> {
-        self.blocks.front().map(|next| (&next.block, next.entry))
+        self.blocks.front().map(|next| (&next.block, if next.is_planned() { next.entry } else { 0 }))
     }
 
     /// The blocks, the nearest first.
     pub fn blocks(&self) -> impl Iterator<Item = &Block> {
         self.blocks.iter().map(|planned| &planned.block)
+    }
+
+    /// A block, counted from the nearest, with what it leads through.
+    pub(super) fn swath(&self, index: usize) -> Option<(&Block, &Swath)> {
+        self.blocks.get(index).map(|planned| (&planned.block, &planned.swath))
+    }
+
+    /// What the group of blocks leads through that begins with one, if one does.
+    pub(super) fn group(&self, index: usize) -> Option<&Swath> {
+        self.groups.at(index)
     }
 
     /// Sets the feed of all motions, but of threads.
@@ -115,63 +165,81 @@ impl<const N: usize> Lookahead<N> {
                 motion.set_feed(feed);
             }
         }
-        self.fresh = self.blocks.len();
+        self.sweep.hurry();
     }
 
     /// Takes the next block away.
     pub fn skip(&mut self) {
-        let _ = self.blocks.pop_front();
-        self.fresh = self.fresh.min(self.blocks.len());
+        if self.blocks.pop_front().is_some() {
+            self.sweep.skip();
+            self.groups.skip();
+        }
     }
 
     /// Forgets all.
     pub fn clear(&mut self) {
         self.blocks.clear();
-        self.fresh = 0;
+        self.sweep = Sweep::NONE;
+        self.groups = Groups::new();
     }
 
     /// The squared speed at which `motion`, the one being executed, has to end.
     pub fn exit(&self, motion: &Motion) -> u64 {
         match self.blocks.front() {
-            Some(Planned { block: Block { work: Work::Motion(_), .. }, entry, .. }) => *entry,
+            Some(Planned { block: Block { work: Work::Motion(_), .. }, entry, .. }) if *entry != NOT_YET => *entry,
             _ => square(motion.stop),
         }
     }
 
     /// Whether the next block is a motion, so that the one being executed need not stop.
     pub fn continues(&self) -> bool {
-        self.blocks.front().is_some_and(|next| as_motion(&next.block).is_some())
+        self.blocks.front().is_some_and(|next| as_motion(&next.block).is_some() && next.is_planned())
     }
 
-    /// Plans the entry speeds anew as far as they change. `active` is the motion being executed.
-    pub fn plan(&mut self, active: Option<&Motion>, overrides: Overrides) {
-        let all = overrides != self.overrides;
-        if !all && self.fresh == 0 {
-            return;
-        }
-        self.overrides = overrides;
-        let known = self.blocks.len().saturating_sub(if all { self.blocks.len() } else { self.fresh });
-        self.fresh = 0;
-        let mut exit: Option<u64> = None;
-        let mut index = self.blocks.len();
-        while let Some(here) = index.checked_sub(1) {
-            index = here;
+    /// Plans the entry speeds anew as far as they change: a tick's part of it, so much `work`. `active` is the motion being
+    /// executed.
+    pub(super) fn plan(&mut self, active: Option<&Motion>, overrides: Overrides, work: u32) {
+        let Some(mut pass) = self.set_out(overrides, work.saturating_mul(LINEAR)) else { return };
+        let overrides = self.overrides;
+        while let Some(here) = self.sweep.next(&mut pass) {
+            let next = self.blocks.get(here.wrapping_add(1));
+            let exit = next.filter(|next| as_motion(&next.block).is_some()).map(|next| next.entry);
             let before = match here.checked_sub(1) {
-                Some(i) => self.blocks.get(i).and_then(|p| as_motion(&p.block)).copied(),
-                None => active.copied(),
+                Some(before) => self.blocks.get(before).and_then(|planned| as_motion(&planned.block)),
+                None => active,
             };
+            let before = before.map(|before| pace(before, overrides));
             let Some(planned) = self.blocks.get_mut(here) else { return };
             let Some(motion) = as_motion(&planned.block) else {
-                exit = None;
+                planned.entry = 0;
                 continue;
             };
-            let entry = linear_entry(before.as_ref(), motion, exit.unwrap_or(square(motion.stop)), overrides);
-            if entry == planned.entry && here < known {
+            pass.costs(motion);
+            let reachable = planned.reachable(motion, motion.length, exit.unwrap_or(square(motion.stop)));
+            let entry = linear_entry(before, motion, reachable, overrides);
+            if entry == planned.entry && self.sweep.knew(here) {
+                self.sweep.finish();
                 return;
             }
             planned.entry = entry;
-            exit = Some(entry);
         }
+    }
+
+    /// A tick's part of a sweep with these overrides, where one is under way or due.
+    fn set_out(&mut self, overrides: Overrides, work: u32) -> Option<Pass> {
+        let changed = overrides != self.overrides;
+        // what is planned at its limits is planned by another law
+        let law = changed && [overrides, self.overrides].iter().any(|those| those.feed == Overrides::AT_LIMIT.feed);
+        let pass = self.sweep.set_out(self.blocks.len(), work, changed, law);
+        if pass.is_some_and(|pass| pass.begins) {
+            self.overrides = overrides;
+        }
+        pass
+    }
+
+    /// Whether all is planned.
+    pub(super) const fn is_planned(&self) -> bool {
+        self.sweep.is_over(self.blocks.len())
     }
 }
 
@@ -181,14 +249,15 @@ impl<const N: usize> Default for Lookahead<N> {
     }
 }
 
-/// Squared speed at which `motion`, behind `before`, may be entered under the linear law so that its exit can be met.
-fn linear_entry(before: Option<&Motion>, motion: &Motion, exit: u64, overrides: Overrides) -> u64 {
+/// Squared speed at which `motion`, behind one that is run at `before`, may be entered under the linear law where its exit can be
+/// met from `reachable`.
+fn linear_entry(before: Option<Speed>, motion: &Motion, reachable: u64, overrides: Overrides) -> u64 {
     let own = pace(motion, overrides);
     let most = match before {
-        Some(before) => motion.joint.min(own).min(pace(before, overrides)),
+        Some(before) => motion.joint.min(own).min(before),
         None => motion.start.min(own),
     };
-    motion.reachable(motion.length, exit).min(square(most))
+    reachable.min(square(most))
 }
 
 /// The motion of a block that moves.

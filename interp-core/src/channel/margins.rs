@@ -95,6 +95,12 @@ impl Margins {
         self.0.iter().fold(Speed::MAX, |least, margin| least.min(margin.cap))
     }
 
+    /// Whether there is none.
+    pub(super) const fn are_empty(&self) -> bool {
+        let [.., longest] = &self.0;
+        longest.length == 0
+    }
+
     /// Length of the longest, nm with 12 fraction bits.
     pub(super) fn longest(&self) -> u64 {
         let [.., longest] = &self.0;
@@ -104,6 +110,15 @@ impl Margins {
     /// What is left of each after `length` (12 fraction bits) of it.
     pub(super) fn pass(&mut self, length: u64) {
         let nm = to_u32(length >> 12);
+        let [_, second, longest] = &mut self.0;
+        if second.length == 0 {
+            // the usual case: one at most
+            longest.length = longest.length.saturating_sub(nm);
+            if longest.length == 0 {
+                *longest = NONE;
+            }
+            return;
+        }
         for margin in &mut self.0 {
             margin.length = margin.length.saturating_sub(nm);
             if margin.length == 0 {

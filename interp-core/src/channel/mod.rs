@@ -26,6 +26,7 @@ mod runner;
 mod settings;
 mod single;
 pub mod superposed;
+mod swath;
 mod thread_hold;
 mod trail;
 mod walk;
@@ -51,6 +52,7 @@ use fence::Fence;
 use hands::Hands;
 use lead::Lead;
 use lookahead::smooth::is_smoothed;
+use lookahead::sweep::{LESS_WORK, WORK};
 use lookahead::{Overrides, pace};
 pub use memory::Memory;
 use runner::{Runner, Sink};
@@ -323,19 +325,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         }
         self.shaper.end_tick(out);
         if matches!(self.state, State::Filling) {
-            let patient = self.waited < FILL_PATIENCE;
-            if self.closed && self.memory.borrow().ahead.is_empty() {
-                self.line = 0;
-                self.state = State::Idle;
-            } else if self.complete
-                || !self.memory.borrow().ahead.has_room()
-                || (!patient && !self.memory.borrow().ahead.is_empty())
-            {
-                self.state = State::Running;
-            } else if !patient {
-                self.line = 0;
-                self.state = State::Idle;
-            }
+            self.fill();
         }
         if matches!(self.state, State::Resetting) && self.speed == 0 && self.settled() {
             self.forget();
@@ -382,14 +372,17 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
                 break;
             };
             self.complete = matches!(block.work, Work::End);
-            let late = self.window.ticks() > 0 && taken == 0 && self.is_late();
             self.memory.borrow_mut().ahead.push(block);
-            if late || self.single.is_on() {
+            if self.single.is_on() {
                 self.memory.borrow_mut().ahead.stand_last();
             }
             taken = taken.wrapping_add(1);
         }
         self.waited = if taken > 0 { 0 } else { self.waited.saturating_add(1) };
+        if self.window.ticks() > 0 {
+            self.stand_late();
+        }
+        let work = if self.fence.is_calm(self.tool()) { WORK } else { LESS_WORK };
         let Memory { ahead, trail } = self.memory.borrow_mut();
         let active = match &self.current {
             // what comes follows the motion begun last, wherever the tool is
@@ -404,8 +397,24 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         };
         let planned = self.crank.planned_with(self.overrides);
         match (self.window.ticks(), self.crank.drive) {
-            (0, _) | (_, Drive::Spindle(_) | Drive::Wheel(_)) => ahead.plan(active, planned),
-            (ticks, Drive::Time) => ahead.plan_smooth(active, planned, ticks),
+            (0, _) | (_, Drive::Spindle(_) | Drive::Wheel(_)) => ahead.plan(active, planned, work),
+            (ticks, Drive::Time) => ahead.plan_smooth(active, planned, work, ticks),
+        }
+    }
+
+    /// Begins to run once enough is known and planned, or gives up.
+    fn fill(&mut self) {
+        let patient = self.waited < FILL_PATIENCE;
+        let Memory { ahead, trail } = self.memory.borrow();
+        if ahead.is_empty() {
+            if self.complete && !self.closed {
+                self.state = State::Running;
+            } else if self.closed || !patient {
+                self.line = 0;
+                self.state = State::Idle;
+            }
+        } else if (self.complete || !ahead.has_room() || !patient) && (ahead.is_planned() || trail.is_behind()) {
+            self.state = State::Running;
         }
     }
 

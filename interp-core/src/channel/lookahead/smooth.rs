@@ -1,6 +1,7 @@
 //! Look-ahead for the lead of an S law: with margins around the joints, and from rest to rest.
 
-use super::{Lookahead, Overrides, as_motion, linear_entry, pace};
+use super::{Lookahead, Overrides, Planned, as_motion, linear_entry, pace};
+use crate::block::Work;
 use crate::block::{Feed, Motion, Speed};
 use crate::channel::margins::Margins;
 use crate::governor::square;
@@ -18,6 +19,29 @@ pub(in crate::channel) const fn is_smoothed(motion: &Motion) -> bool {
     matches!(motion.feed, Feed::Rapid | Feed::PerTick(_))
 }
 
+/// How fast a motion may be run, under any override and under the present one.
+#[derive(Copy, Clone, Debug)]
+struct Paces {
+    most: Speed,
+    pace: Speed,
+}
+
+impl Paces {
+    fn of(motion: &Motion, overrides: Overrides) -> Self {
+        Self { most: most(motion), pace: pace(motion, overrides) }
+    }
+}
+
+impl Planned {
+    /// What a smoothed motion before it keeps at its end: a squared speed and margins.
+    fn kept(&self) -> (u64, Margins) {
+        match as_motion(&self.block) {
+            Some(motion) if !self.stands && is_smoothed(motion) => (self.entry, self.margins),
+            _ => (0, Margins::EMPTY),
+        }
+    }
+}
+
 impl<const N: usize> Lookahead<N> {
     /// A block to come, from 0, where it is a smoothed motion.
     pub(in crate::channel) fn motion(&self, index: usize) -> Option<&Motion> {
@@ -26,7 +50,10 @@ impl<const N: usize> Lookahead<N> {
 
     /// Whether block `index` is a motion that is begun from standstill though it follows one.
     pub(in crate::channel) fn stands(&self, index: usize) -> bool {
-        self.motion(index).is_none() || self.blocks.get(index).is_some_and(|planned| planned.stands)
+        let goes_on = self.blocks.get(index).is_some_and(|planned| {
+            !planned.stands && planned.is_planned() && as_motion(&planned.block).is_some_and(is_smoothed)
+        });
+        !goes_on
     }
 
     /// Each line is begun from standstill, after the rest of `line`.
@@ -36,7 +63,7 @@ impl<const N: usize> Lookahead<N> {
             planned.stands |= planned.block.line != before;
             before = planned.block.line;
         }
-        self.fresh = self.blocks.len();
+        self.sweep.hurry();
     }
 
     /// The block pushed last is begun from standstill: it came too late for anything else.
@@ -46,12 +73,30 @@ impl<const N: usize> Lookahead<N> {
         }
     }
 
+    /// The first block whose plan does not act yet on what leads up to block `next`: the joint before it may have margins that
+    /// nobody keeps to so far.
+    pub(in crate::channel) fn pending(&self, next: usize) -> Option<usize> {
+        let pending = self.sweep.pending(next, self.blocks.len())?;
+        let waits = self.blocks.get(pending).is_some_and(|planned| !planned.stands);
+        waits.then_some(pending)
+    }
+
+    /// Block `index` is begun from standstill: it came too late for anything else.
+    pub(in crate::channel) fn stand_at(&mut self, index: usize) {
+        if let Some(late) = self.blocks.get_mut(index) {
+            late.stands = true;
+            if late.is_planned() {
+                (late.entry, late.margins) = (0, Margins::EMPTY);
+            }
+        }
+        self.sweep.again_before(index);
+    }
+
     /// What `motion`, behind which comes block `index`, keeps at its end: a squared speed and margins.
     pub(in crate::channel) fn leave(&self, index: usize, motion: &Motion, ticks: u8) -> (u64, Margins) {
         match self.blocks.get(index) {
-            None => (0, Margins::reserve(motion, ticks)),
-            Some(next) if !self.stands(index) => (next.entry, next.margins),
-            Some(_) => (0, Margins::EMPTY),
+            Some(next) if next.is_planned() => next.kept(),
+            _ => (0, Margins::reserve(motion, ticks)),
         }
     }
 
@@ -60,48 +105,66 @@ impl<const N: usize> Lookahead<N> {
     /// What no override changes, the speeds of joints and the limits of the machine, has margins of its own at any
     /// override: so braking as hard as allowed meets them, whatever the operator does. Those of the programmed feeds come
     /// besides; where an override makes them suddenly lower they are approached gradually.
-    pub(in crate::channel) fn plan_smooth(&mut self, active: Option<&Motion>, overrides: Overrides, ticks: u8) {
-        let all = overrides != self.overrides;
-        if !all && self.fresh == 0 {
-            return;
-        }
-        self.overrides = overrides;
-        let known = if all { 0 } else { self.blocks.len().saturating_sub(self.fresh) };
-        self.fresh = 0;
-        let mut index = self.blocks.len();
-        while let Some(here) = index.checked_sub(1) {
-            index = here;
-            let Some(motion) = self.motion(here) else {
-                self.plan_paced(here, active, overrides);
-                continue;
-            };
+    pub(in crate::channel) fn plan_smooth(
+        &mut self,
+        active: Option<&Motion>,
+        overrides: Overrides,
+        work: u32,
+        ticks: u8,
+    ) {
+        let Some(mut pass) = self.set_out(overrides, work) else { return };
+        let overrides = self.overrides;
+        let mut of_before: Option<Paces> = None;
+        let mut next = self.blocks.get(self.sweep.left()).map(Planned::kept);
+        while let Some(here) = self.sweep.next(&mut pass) {
             let before = match here.checked_sub(1) {
-                Some(before) => self.motion(before),
-                None => active.filter(|motion| is_smoothed(motion)),
+                Some(before) => self.blocks.get(before).and_then(|planned| as_motion(&planned.block)),
+                None => active,
             };
-            let (exit, mut margins) = self.leave(index.wrapping_add(1), motion, ticks);
-            let way = margins.way(motion, motion.length, exit);
-            margins.pass(motion.length);
-            let mut entry = motion.reachable(way.room, way.exit).min(square(way.cap));
-            match before {
-                Some(before) if !self.stands(here) => {
-                    let (hard, own) = (motion.joint.min(motion.limit), pace(motion, overrides));
-                    if hard < most(before) {
+            let before = before.filter(|motion| is_smoothed(motion)).map(|motion| Paces::of(motion, overrides));
+            let own = core::mem::replace(&mut of_before, before);
+            let known = self.sweep.knew(here);
+            let Some(planned) = self.blocks.get_mut(here) else { return };
+            let motion = match &planned.block.work {
+                Work::Motion(motion) if is_smoothed(motion) => motion,
+                _ => {
+                    self.plan_paced(here, active, overrides);
+                    next = Some((0, Margins::EMPTY));
+                    continue;
+                }
+            };
+            pass.costs(motion);
+            let (exit, mut margins) = next.unwrap_or_else(|| (0, Margins::reserve(motion, ticks)));
+            let entry = match before {
+                Some(before) if !planned.stands => {
+                    let entry = if margins.are_empty() {
+                        planned.reachable(motion, motion.length, exit)
+                    } else {
+                        let way = margins.way(motion, motion.length, exit);
+                        margins.pass(motion.length);
+                        planned.reachable(motion, way.room, way.exit).min(square(way.cap))
+                    };
+                    let own = own.unwrap_or_else(|| Paces::of(motion, overrides));
+                    let hard = motion.joint.min(motion.limit);
+                    if hard < before.most {
                         margins.keep(hard, ticks);
                     }
-                    let paced = pace(before, overrides);
-                    if own < hard.min(paced) {
-                        margins.keep(own, ticks);
+                    if own.pace < hard.min(before.pace) {
+                        margins.keep(own.pace, ticks);
                     }
-                    entry = entry.min(square(hard.min(own).min(paced)));
+                    entry.min(square(hard.min(own.pace).min(before.pace)))
                 }
-                _ => (entry, margins) = (0, Margins::EMPTY),
-            }
-            let Some(planned) = self.blocks.get_mut(here) else { return };
-            if here < known && (entry, margins) == (planned.entry, planned.margins) {
+                _ => {
+                    margins = Margins::EMPTY;
+                    0
+                }
+            };
+            if known && (entry, margins) == (planned.entry, planned.margins) {
+                self.sweep.finish();
                 return;
             }
             (planned.entry, planned.margins) = (entry, margins);
+            next = Some((entry, margins));
         }
     }
 
@@ -109,15 +172,20 @@ impl<const N: usize> Lookahead<N> {
     fn plan_paced(&mut self, here: usize, active: Option<&Motion>, overrides: Overrides) {
         let paced =
             |index: usize| self.blocks.get(index).and_then(|planned| Some((planned.entry, as_motion(&planned.block)?)));
-        let Some((_, motion)) = paced(here) else { return };
+        let Some((_, motion)) = paced(here) else {
+            if let Some(planned) = self.blocks.get_mut(here) {
+                planned.entry = 0;
+            }
+            return;
+        };
         let before = match here.checked_sub(1) {
             Some(before) => paced(before).map(|(_, motion)| motion),
             None => active,
         };
-        let before = before.filter(|before| !is_smoothed(before));
+        let before = before.filter(|before| !is_smoothed(before)).map(|before| pace(before, overrides));
         let next = paced(here.wrapping_add(1)).filter(|(_, next)| !is_smoothed(next));
         let exit = next.map_or(square(motion.stop), |(entry, _)| entry);
-        let entry = linear_entry(before, motion, exit, overrides);
+        let entry = linear_entry(before, motion, motion.reachable(motion.length, exit), overrides);
         if let Some(planned) = self.blocks.get_mut(here) {
             planned.entry = entry;
         }

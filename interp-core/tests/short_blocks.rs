@@ -1,0 +1,76 @@
+//! Programs of blocks so short that a stop from the feed takes dozens of them.
+#![allow(
+    clippy::unwrap_used,
+    clippy::cast_precision_loss,
+    clippy::arithmetic_side_effects,
+    missing_docs,
+    reason = "tests"
+)]
+
+use interp_core::block::{Block, Builder, Pace, Path, Work};
+use interp_core::channel::{Channel, State};
+use interp_core::config::{AxisConfig, Config, Machine};
+use interp_core::law::SpeedLaw;
+use interp_core::train::Event;
+use interp_core::units::{Feedrate, Lattice, Length, Point, PulseSize};
+
+/// Acceleration of both axes, mm/s2.
+const ACCEL: u32 = 500;
+
+fn machine(law: Option<SpeedLaw>) -> Machine {
+    let axis = AxisConfig {
+        pulse: PulseSize::new(1250, 1).unwrap(),
+        max_feed: Feedrate::from_nm_per_min(5_000_000_000).unwrap(),
+        max_accel: ACCEL * 1_000,
+        max_jump: 2_000,
+        pulse_width_ns: 5_000,
+        dir_setup_ns: 5_000,
+        dir_hold_ns: 10_000,
+        min_space_ns: 5_000,
+    };
+    let machine = Config { x: axis, z: axis, event_min_ns: 2_000 }.check().unwrap();
+    law.map_or(machine, |law| machine.with_law(law, 50_000).unwrap())
+}
+
+/// The largest speed, mm/s, of so many lines of `um` along Z at the largest feed, which all wait in the source.
+fn speed(law: Option<SpeedLaw>, um: i32, count: i32) -> f64 {
+    let machine = machine(law);
+    let at = |z_um: i32| Point { x: Length::from_um(0).unwrap(), z: Length::from_um(z_um).unwrap() };
+    let mut builder = Builder::new(&machine, at(0));
+    let pace = Pace::Feed(Feedrate::from_nm_per_min(5_000_000_000).unwrap());
+    let mut works: Vec<Work> = Vec::new();
+    for n in 1..=count {
+        works.extend(builder.motion(Path::Line, at(n * um), pace).motions.iter().map(|motion| Work::Motion(*motion)));
+    }
+    works.push(Work::End);
+    let mut works = works.into_iter();
+    let mut channel = Channel::<72>::new(&machine, Lattice::default());
+    assert!(channel.start());
+    let mut most = 0;
+    loop {
+        let mut source = || works.next().map(|work| Block { line: 1, work });
+        let report = channel.tick(&mut source, &mut |_: Event| {});
+        most = most.max(report.speed);
+        if report.state == State::Ended {
+            return f64::from(most) / 4096.0 / 1000.0;
+        }
+    }
+}
+
+/// Planning some blocks a tick takes ticks in which blocks are passed: a look-ahead of 72 makes up for them.
+#[test]
+fn what_72_blocks_planned_bit_by_bit_allow_is_no_slower_than_64_planned_at_once() {
+    let accel = f64::from(ACCEL);
+    for um in [140, 100, 70, 50, 30, 20, 10] {
+        // what is known is enough to brake in: v^2 / 2a = 64 L
+        let known = 64.0 * f64::from(um) / 1000.0;
+        let linear = (2.0 * accel * known).sqrt().min(5000.0 / 60.0);
+        let found = speed(None, um, 120_000 / um);
+        assert!(found >= linear * 0.999, "{um} um: {found} mm/s, {linear} wanted");
+        // and, under an S law, twice the window of pi/2 a/j besides: v^2 / 2a + 2 v T = 64 L
+        let ways = 2.0 * core::f64::consts::FRAC_PI_2 * accel / 50_000.0;
+        let sine = (accel * (((ways * accel).powi(2) + 2.0 * accel * known).sqrt() / accel - ways)).min(5000.0 / 60.0);
+        let found = speed(Some(SpeedLaw::Sine), um, 120_000 / um);
+        assert!(found >= sine * 0.98, "{um} um: {found} mm/s, {sine} wanted");
+    }
+}
