@@ -180,6 +180,12 @@ impl Shaper {
         strides.agree(self.levels)
     }
 
+    /// The direction, plus or not, to which these steps would turn an axis round.
+    #[inline]
+    pub const fn turns(&self, strides: &Strides, axis: Axis) -> Option<bool> {
+        strides.turned(axis, self.levels)
+    }
+
     /// Makes up to `count` steps that come evenly: each is straight, or diagonal where `turns` says so. Steps that touch a
     /// rule end the row: where `singly`, the first of those is made, too, by itself, so that at least one step is made;
     /// else it is for [`step`](Self::step), to which all others come out the same.

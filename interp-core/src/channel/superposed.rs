@@ -32,7 +32,7 @@ struct Added {
     /// Pulses that are still due in this tick, and when.
     left: u32,
     times: Times,
-    /// Their direction.
+    /// Their direction, 0 where none were.
     sign: i8,
     /// A pulse, at most, that would turn the axis round and waits.
     owed: i8,
@@ -45,7 +45,9 @@ impl Added {
 
     fn begin(&mut self, pulses: i32) {
         self.left = pulses.unsigned_abs();
-        self.sign = if pulses < 0 { -1 } else { 1 };
+        #[expect(clippy::cast_possible_truncation, reason = "-1, 0 or 1")]
+        let sign = pulses.signum() as i8;
+        self.sign = sign;
         if let Some(spacing) = (TICK_CLOCKS << FRACTION).checked_div(self.left) {
             self.times = Times { time: spacing / 2, spacing };
         }
@@ -172,10 +174,14 @@ impl Superposed {
         out: &mut impl Train,
     ) -> (u32, Strides) {
         let room = self.room_before(times, count, strides, shaper, out);
-        if room > 0 && self.waits() { (straight(room), strides.straight()) } else { (room, *strides) }
+        if room > 0 && (self.waits() || self.opposes(strides, shaper)) {
+            (straight(room), strides.straight())
+        } else {
+            (room, *strides)
+        }
     }
 
-    /// The same, but for diagonal steps that move an axis which owes a pulse.
+    /// The same, but for diagonal steps that move an axis which owes a pulse, or that would turn it against what is added.
     #[cold]
     fn room_before(
         &mut self,
@@ -189,8 +195,7 @@ impl Superposed {
             return 0;
         }
         let first = times.time >> FRACTION;
-        let among = self.next().is_some_and(|next| next >> FRACTION <= first);
-        if among {
+        if self.next().is_some_and(|next| next >> FRACTION <= first) {
             self.until(first, shaper, out);
         }
         let waits = self.waits();
@@ -198,8 +203,9 @@ impl Superposed {
         if owes(&self.x, Axis::X) || owes(&self.z, Axis::Z) {
             return 0;
         }
-        // a step that would turn an axis round again is offered to what was added
-        if among && !waits && !shaper.faces(strides) || waits && !shaper.faces(&strides.straight()) {
+        // a step that would turn an axis round again is offered to what is added
+        let straight = strides.straight();
+        if waits && !shaper.faces(&straight) || self.opposes(&straight, shaper) {
             return 0;
         }
         let Some(next) = self.next() else { return count };
@@ -207,6 +213,16 @@ impl Superposed {
         let next = next >> FRACTION << FRACTION;
         let Some(before) = next.checked_sub(times.time).and_then(|room| room.checked_sub(1)) else { return 0 };
         before.checked_div(times.spacing).map_or(0, |more| more.saturating_add(1)).min(count)
+    }
+
+    /// Whether steps would turn an axis round against what is added to it in this tick.
+    fn opposes(&self, strides: &Strides, shaper: &Shaper) -> bool {
+        let axis = |added: &Added, axis: Axis| match shaper.turns(strides, axis) {
+            Some(true) => added.sign < 0,
+            Some(false) => added.sign > 0,
+            None => false,
+        };
+        axis(&self.x, Axis::X) || axis(&self.z, Axis::Z)
     }
 
     /// Whether a pulse is owed.

@@ -53,6 +53,9 @@ pub struct Job {
     /// Where chance begins: the same seed gives the same sessions.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Run only the session of this seed, as a failure tells it.
+    #[arg(long, value_name = "SEED", conflicts_with_all = ["hours", "seed"])]
+    pub session: Option<u64>,
     /// Run this scenario under the same rules, instead.
     #[arg(long, value_name = "FILE")]
     pub replay: Option<PathBuf>,
@@ -106,15 +109,17 @@ fn rate(ticks: u64, seconds: f64) -> String {
 /// Runs sessions for so many simulated hours.
 pub fn run(job: &Job, tell: bool) -> Soaked {
     let (mut coverage, mut soaked) = (Coverage::default(), Soaked::default());
+    // a single session is over after the first
+    let hours = if job.session.is_some() { f64::MIN_POSITIVE } else { job.hours.max(0.0) };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some hours")]
-    let wanted = (job.hours.max(0.0) * HOUR as f64) as u64;
+    let wanted = (hours * HOUR as f64).ceil() as u64;
     let bar = if tell { ProgressBar::new(wanted) } else { ProgressBar::hidden() };
     let style =
         ProgressStyle::with_template("{bar:30} {percent}% {elapsed} {msg}").unwrap_or(ProgressStyle::default_bar());
     bar.set_style(style);
     let mut number = 0;
     while soaked.ticks < wanted {
-        let seed = job.seed.wrapping_mul(1_000_003).wrapping_add(number);
+        let seed = job.session.unwrap_or(job.seed.wrapping_mul(1_000_003).wrapping_add(number));
         let begun = Instant::now();
         let (session, outcome) = one(seed);
         coverage.add(&outcome.coverage);
