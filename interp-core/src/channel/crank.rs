@@ -121,7 +121,7 @@ impl Crank {
     }
 
     /// Prepares the ratio of a feed a turn.
-    fn prepare(&mut self, lead: Lead) {
+    pub(super) fn prepare(&mut self, lead: Lead) {
         self.feed = self.spindle.map(|spindle| {
             let turn = u64::from(spindle.turn()).wrapping_mul(COUNT.unsigned_abs());
             Proportion::new(u64::from(lead.nm()) << 12, turn, turn)

@@ -74,7 +74,7 @@ impl Lead {
 fn ahead_of<'c, const N: usize>(current: &'c Current, ahead: &'c Lookahead<N>, blocks: usize) -> Option<&'c Motion> {
     match (blocks.checked_sub(1), current) {
         (Some(index), _) => ahead.motion(index),
-        (None, Current::Motion(active)) => Some(&active.motion).filter(|motion| is_smoothed(motion)),
+        (None, Current::Motion(active)) => Some(&active.motion).filter(|_| !active.linear),
         (None, Current::Nothing | Current::Dwell(_)) => None,
     }
 }
@@ -83,9 +83,28 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Whether a tick belongs to the lead and the tool that follows it, not to a block that stands still.
     pub(super) fn follows(&self) -> bool {
         match self.current {
-            Current::Motion(ref active) => is_smoothed(&active.motion),
+            Current::Motion(ref active) => !active.linear,
             Current::Dwell(_) => false,
             Current::Nothing => !self.window.is_drained() || self.memory.borrow().ahead.motion(0).is_some(),
+        }
+    }
+
+    /// Whether what is executed keeps to the linear law although its feed is none of a spindle any more: what follows is begun
+    /// from standstill.
+    fn keeps_linear(&self) -> bool {
+        matches!(&self.current, Current::Motion(active) if active.linear && is_smoothed(&active.motion))
+    }
+
+    /// The feed of what is executed is another one. What moves and is or was paced by a spindle goes by the linear law from here to
+    /// its end; what stands is begun from here under the law of its feed.
+    pub(super) fn change_law(&mut self) {
+        let Current::Motion(active) = &mut self.current else { return };
+        let linear = !is_smoothed(&active.motion) || self.speed != 0 && active.linear;
+        if linear != active.linear {
+            active.linear = linear;
+            // the tool goes on from where it is
+            self.window.clear();
+            self.lead = Lead::at(active.done);
         }
     }
 
@@ -110,6 +129,9 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Where a block is too late to be planned with, it is begun from standstill: the lead, which keeps to what was planned before
     /// it came, is so near the end of that that the margins of the joint there might not be kept.
     pub(super) fn stand_late(&mut self) {
+        if self.keeps_linear() {
+            return self.memory.borrow_mut().ahead.stand_at(0);
+        }
         let ahead = &self.memory.borrow().ahead;
         let (first, done) = (self.lead.block, self.lead.done);
         let Some(pending) = ahead.pending(first) else { return };

@@ -124,6 +124,8 @@ struct Active {
     pace: Speed,
     paced_at: Overrides,
     cruise: Cruise,
+    /// It goes by the linear law, whatever its feed is now: a spindle has paced it while it moved.
+    linear: bool,
 }
 
 impl Active {
@@ -132,6 +134,7 @@ impl Active {
     fn new(motion: &Motion, overrides: Overrides, from: Lattice) -> Self {
         Self {
             from,
+            linear: !is_smoothed(motion),
             runner: Runner::new(&motion.curve, motion.length),
             done: 0,
             pace: pace(motion, overrides),

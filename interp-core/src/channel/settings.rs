@@ -56,9 +56,13 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         if let Current::Motion(active) = &mut self.current {
             active.motion.set_feed(feed);
             active.paced_at = Overrides::AT_LIMIT;
+            if let Feed::PerTurn(lead) = active.motion.feed {
+                self.crank.prepare(lead);
+            }
         }
         self.lead.repace();
         self.memory.borrow_mut().ahead.set_feed(feed);
+        self.change_law();
     }
 
     /// Calls the tool's place another one; nothing moves, and the screws are where they were. False, and nothing changes, while

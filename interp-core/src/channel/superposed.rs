@@ -45,9 +45,7 @@ impl Added {
 
     fn begin(&mut self, pulses: i32) {
         self.left = pulses.unsigned_abs();
-        #[expect(clippy::cast_possible_truncation, reason = "-1, 0 or 1")]
-        let sign = pulses.signum() as i8;
-        self.sign = sign;
+        self.sign = pulses.signum() as i8;
         if let Some(spacing) = (TICK_CLOCKS << FRACTION).checked_div(self.left) {
             self.times = Times { time: spacing / 2, spacing };
         }
