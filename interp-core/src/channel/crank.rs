@@ -254,7 +254,6 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     pub(super) fn turn_crank(&mut self, out: &mut impl Train) -> Option<Output> {
         self.crank.driven = Driven { locked: self.crank.driven.locked, ..Driven::NONE };
         let counts = core::mem::take(&mut self.crank.counts);
-        self.memory.borrow_mut().trail.slide(self.crank.back, &mut self.maker);
         if let Current::Dwell(clocks) = &mut self.current {
             if matches!(self.state, State::Running) {
                 *clocks = clocks.saturating_sub(u64::from(TICK_CLOCKS));

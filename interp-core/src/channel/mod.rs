@@ -319,6 +319,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             }
             self.fence.forget();
             if in_cycle {
+                self.slide();
                 self.keep_inside();
                 output = self.run(out);
             }
@@ -421,15 +422,21 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         }
     }
 
+    /// A tick's step toward having the motions at hand that were gone back over: before anybody looks where the path leads.
+    #[inline]
+    fn slide(&mut self) {
+        let trail = &mut self.memory.borrow_mut().trail;
+        if self.crank.turns || trail.is_behind() {
+            trail.slide(self.crank.turns && self.crank.back, &mut self.maker);
+        }
+    }
+
     /// Executes for one tick.
     fn run(&mut self, out: &mut impl Train) -> Option<Output> {
         if self.crank.turns {
             return self.turn_crank(out);
         }
-        let trail = &mut self.memory.borrow_mut().trail;
-        if trail.is_behind() {
-            trail.slide(false, &mut self.maker);
-        } else if self.window.ticks() > 0 && self.follows() {
+        if self.window.ticks() > 0 && !self.memory.borrow().trail.is_behind() && self.follows() {
             if self.window.is_drained() && matches!(self.current, Current::Nothing) && self.stops_single() {
                 self.state = State::Stopped;
                 self.speed = 0;
