@@ -169,6 +169,8 @@ fn to_mode(to: Mode, now: &Situation) -> Option<Refusal> {
     }
     let there_and_back = matches!((now.mode, to), (Mode::Automatic, Mode::Retrace) | (Mode::Retrace, Mode::Automatic));
     match (there_and_back, to) {
+        // the spindle drives a thread whatever the mode, and goes on with it where the path goes on
+        (true, _) if now.thread => Some(Refusal::InThread),
         (true, _) if now.stands() || matches!(now.mode, Mode::Retrace) => None,
         (true, _) | (false, Mode::Retrace) => Some(Refusal::NothingToRetrace),
         (false, _) if now.in_cycle() => Some(Refusal::CycleUnderWay),

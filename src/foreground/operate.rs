@@ -99,6 +99,12 @@ impl Foreground<'_> {
                 }
                 continue;
             }
+            if slides && matches!(self.desk.nulling, Nulling::Goes) {
+                // a turn ends it; what it goes while it brakes is the offset's still, and no slide's
+                AXES.into_iter().for_each(|axis| self.channel.stop_hand(axis));
+                self.desk.wheels.drop(axis, i32::from(counts));
+                continue;
+            }
             self.desk.nulling = Nulling::No;
             let (dropped, at_end) = self.channel.turn_hand(axis, click, counts, ends);
             self.desk.wheels.drop(axis, dropped);

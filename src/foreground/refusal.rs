@@ -131,7 +131,7 @@ impl fmt::Display for Refusal {
             Self::NothingToReturnFrom => f.write_str("no power feed was made that could be returned from"),
             Self::NoStop => f.write_str("there is no stop to repeat to: set one with stop-at, or enter a contour"),
             Self::NothingToResume => f.write_str("nothing was interrupted that could be resumed"),
-            Self::InThread => f.write_str("a thread is being cut: let it end, or hold"),
+            Self::InThread => f.write_str("a thread is being cut: let it end, or reset"),
             Self::Limit(axis, plus) => {
                 write!(f, "{} is at its {} limit", axis.letter(), if *plus { "plus" } else { "minus" })
             }
