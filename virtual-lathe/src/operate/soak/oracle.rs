@@ -77,6 +77,8 @@ struct AxisBooks {
     at: i32,
     still: u32,
     verified: bool,
+    /// What the compensation has given, and since when.
+    given: (i32, u64),
 }
 
 impl AxisBooks {
@@ -86,7 +88,8 @@ impl AxisBooks {
             Axis::Z => machine.z.pulse,
         };
         let clicks = Clicks::new();
-        Self { axis, pulse, shift: 0, own: 0, allowed: None, bound: None, clicks, at: 0, still: STANDS, verified: true }
+        let (at, still, given) = (0, STANDS, (0, 0));
+        Self { axis, pulse, shift: 0, own: 0, allowed: None, bound: None, clicks, at, still, verified: true, given }
     }
 }
 
@@ -454,8 +457,11 @@ impl Oracle {
             return Err(("count", format!("{what}, {axis:?} shows {off} pulses more than the pins have counted")));
         }
         let own = plain + books.own;
-        // of what a compensation has given, a pulse that would turn the axis round may still be owed
-        let owed = i32::from(!stands && *tick.compensation.of(axis) != 0);
+        // of what a compensation has just given, a pulse that would turn the axis round may still be owed
+        if books.given.0 != *tick.compensation.of(axis) {
+            books.given = (*tick.compensation.of(axis), tick.tick);
+        }
+        let owed = i32::from(!stands && tick.tick - books.given.1 <= u64::from(STANDS));
         let figures = self.operation.axes.of(axis);
         if verified {
             let (least, most) = figures.limits;
@@ -528,7 +534,9 @@ impl Oracle {
         if matches!(report.driven.stage, ThreadStage::Returning | ThreadStage::Entering) {
             track.jumps();
         }
-        if moved && !track.follow(shown.programmed, wheel) {
+        // the spindle that drives a thread comes to rest with a last swing back, or what is foretold of it does
+        let driven = wheel || report.driven.stage != ThreadStage::None;
+        if moved && !track.follow(shown.programmed, driven) {
             let Lattice { x, z } = shown.programmed;
             return Err(("curve", format!("line {}: X {x} Z {z} is no point of the program's curve", report.line)));
         }
