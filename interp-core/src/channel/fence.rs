@@ -342,7 +342,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
                 begins = begin(at, earlier);
                 span = see(span, at, whole(begins, earlier), earlier, earlier.length, &mut braking);
             }
-            return span;
+            return self.beyond(span, back, &braking);
         }
         for later in memory.trail.later() {
             if braking.stands() {
@@ -382,7 +382,21 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             };
             ends = plus(ends, swath.end);
         }
-        span
+        self.beyond(span, back, &braking)
+    }
+
+    /// The span with what a path that does not stand at the end of the motions at hand may lead through behind them, whichever
+    /// way: they are left at the start-stop speed at most, and what is made by then is gone on into.
+    fn beyond(&self, span: Span, back: bool, braking: &Braking) -> Span {
+        match self.memory.borrow().trail.leaves(back) {
+            Some(speed) if !braking.stands() && !braking.begins => {
+                let speed = u64::from(speed.saturating_add(braking.gains.unwrap_or(0)));
+                let (x, z) = self.hands.pulses_of(self.hands.braking_from(speed).saturating_add(speed));
+                let by = Lattice { x, z };
+                span.and(span.moved(by)).and(span.moved(Lattice { x: x.wrapping_neg(), z: z.wrapping_neg() }))
+            }
+            _ => span,
+        }
     }
 
     /// All that a thread leads through, forward and back and with X pulled out anywhere.

@@ -187,11 +187,15 @@ impl Hands {
     /// More than anything needs to brake, with what an S law of so many ticks has planned: nm with 12 fraction bits.
     pub(super) fn longest_braking(&self, ticks: u8) -> u64 {
         let speed = u64::from(self.x.speed).saturating_add(self.z.speed.into());
+        self.braking_from(speed).saturating_add(speed.saturating_mul(u64::from(ticks).saturating_add(16)))
+    }
+
+    /// More than anything needs to brake from a speed: nm with 12 fraction bits.
+    pub(super) fn braking_from(&self, speed: u64) -> u64 {
         let least = |axis: &AxisHand| axis.accel.min(axis.share()).max(1);
         let accel = u64::from(least(&self.x).min(least(&self.z)));
         // on an arc turning takes up to half of it
-        let brakes = speed.saturating_mul(speed).checked_div(accel).unwrap_or(u64::MAX);
-        brakes.saturating_add(speed.saturating_mul(u64::from(ticks).saturating_add(16)))
+        speed.saturating_mul(speed).checked_div(accel).unwrap_or(u64::MAX)
     }
 
     /// Whether none moves nor has to.

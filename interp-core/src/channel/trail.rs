@@ -16,8 +16,8 @@ mod record;
 mod tests;
 
 use super::lookahead::Lookahead;
-use crate::block::Motion;
 use crate::block::again::Outline;
+use crate::block::{Motion, Speed};
 use crate::drive::BackEnd;
 use crate::governor::square;
 use heapless::Deque;
@@ -160,6 +160,17 @@ impl Trail {
     /// Whether all motions that were begun before lie behind the tool's up to the look-ahead's: else the path stands before it.
     pub(super) const fn is_whole(&self) -> bool {
         !self.short
+    }
+
+    /// The speed at which the path may leave the motions at hand in a sense, where there is more behind them that was begun before
+    /// and is not made yet.
+    pub(super) fn leaves(&self, back: bool) -> Option<Speed> {
+        if back {
+            let oldest = self.window.front()?;
+            self.history.before(oldest.place).map(|_| oldest.motion.start)
+        } else {
+            self.window.back().filter(|_| self.short).map(|newest| newest.motion.stop)
+        }
     }
 
     /// Goes to the motion before. False where there is none, or it is not ready.
