@@ -7,6 +7,7 @@ use super::inputs::{AXES, Joystick, PerAxis};
 use super::mode::{Mode, Situation};
 use super::power::Phase;
 use super::refusal::Refusal;
+use super::threads::Lever;
 use super::{Alarm, Foreground};
 use interp_core::block::Feed;
 use interp_core::channel::State;
@@ -160,6 +161,7 @@ impl Foreground<'_> {
         }
         self.desk.mode = mode;
         self.desk.power.cancel(self.desk.inputs.joystick);
+        self.desk.lever = Lever::Out;
         if !matches!(self.desk.inputs.joystick, Joystick::Off) {
             self.desk.refuse(Refusal::JoystickLatched);
         }
@@ -195,6 +197,7 @@ impl Foreground<'_> {
         }
         self.channel.pull(None);
         self.desk.power.cancel(self.desk.inputs.joystick);
+        self.desk.lever = Lever::Out;
         self.desk.homing = homing::Phase::Rest;
         self.desk.starting = false;
         if matches!(self.desk.nulling, Nulling::Waits) {
