@@ -69,8 +69,8 @@ struct AxisBooks {
     /// The place shown less that of the pins; and the same in the machine's coordinates.
     shift: i32,
     own: i32,
-    /// How far it may be to either side, in the machine's coordinates, and how far the offset.
-    allowed: Option<(i32, i32)>,
+    /// How far it may be to either side, in the machine's coordinates, now and in the tick to come; and how far the offset.
+    allowed: Option<[(i32, i32); 2]>,
     bound: Option<(i32, i32)>,
     clicks: Clicks,
     /// The place shown, and ticks since it or the pins moved.
@@ -465,11 +465,16 @@ impl Oracle {
         let figures = self.operation.axes.of(axis);
         if verified {
             let (least, most) = figures.limits;
-            let allowed = books.allowed.get_or_insert((least.min(own), most.max(own)));
-            if own < allowed.0 - owed || own > allowed.1 + owed {
+            let [now, next] = books.allowed.get_or_insert([(least.min(own), most.max(own)); 2]);
+            if own < now.0 - owed || own > now.1 + owed {
                 return Err(("soft-limit", format!("{axis:?} is at {own} of {least} to {most} pulses")));
             }
-            *allowed = (least.min(own).max(allowed.0), most.max(own).min(allowed.1));
+            // beyond its limit a path goes on for a tick if it can brake from there without leading farther out than it is now:
+            // where it turns round out there, it is held, and brakes within where it was when it went on last
+            if shown.speed == 0 || shown.state == State::Running {
+                *now = *next;
+            }
+            *next = (least.min(own).max(now.0), most.max(own).min(now.1));
             if (own == least || own == most) && books.still == 0 {
                 coverage.happened("soft limit reached");
             }
