@@ -98,7 +98,7 @@ pub const fn root_wide(value: u128) -> u64 {
     root
 }
 
-/// Arithmetic of 128 bits as calls: in the code each such product takes a hundred instructions and more, and where
+/// Arithmetic of 128 bits as calls: in the code each such product takes a hundred instructions and more, a quotient three hundred, and where
 /// blocks are prepared space matters, not time.
 pub trait Wide {
     /// The product modulo 2^128.
@@ -113,6 +113,10 @@ pub trait Wide {
         Self: Sized;
     /// What is left then.
     fn rest(self, divisor: Self) -> Option<Self>
+    where
+        Self: Sized;
+    /// The quotient rounded toward zero; `None` for a divisor of 0.
+    fn over(self, divisor: Self) -> Option<Self>
     where
         Self: Sized;
 }
@@ -136,6 +140,38 @@ impl Wide for i128 {
     #[inline(never)]
     fn rest(self, divisor: Self) -> Option<Self> {
         self.checked_rem_euclid(divisor)
+    }
+
+    #[inline(never)]
+    fn over(self, divisor: Self) -> Option<Self> {
+        self.checked_div(divisor)
+    }
+}
+
+impl Wide for u128 {
+    #[inline(never)]
+    fn times(self, other: Self) -> Self {
+        self.wrapping_mul(other)
+    }
+
+    #[inline(never)]
+    fn squared(self) -> Self {
+        self.saturating_mul(self)
+    }
+
+    #[inline(never)]
+    fn quotient(self, divisor: Self) -> Option<Self> {
+        self.checked_div(divisor)
+    }
+
+    #[inline(never)]
+    fn rest(self, divisor: Self) -> Option<Self> {
+        self.checked_rem(divisor)
+    }
+
+    #[inline(never)]
+    fn over(self, divisor: Self) -> Option<Self> {
+        self.quotient(divisor)
     }
 }
 

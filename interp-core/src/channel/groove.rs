@@ -8,6 +8,7 @@ use super::Memory;
 use crate::block::Motion;
 use crate::drive::gearing::Lead;
 use crate::drive::spindle::{ANGLE_BITS, Spindle};
+use crate::math::Wide;
 use crate::units::PulseSize;
 use core::borrow::BorrowMut;
 
@@ -26,14 +27,14 @@ impl Groove {
         let (_, dz) = motion.curve.end();
         let nm = |pulses: i32| {
             let nm = i128::from(pulses).wrapping_mul(i128::from(pulse.numerator()) << 12);
-            nm.checked_div(i128::from(pulse.denominator())).unwrap_or(0)
+            nm.over(i128::from(pulse.denominator())).unwrap_or(0)
         };
         let off = nm(z.wrapping_sub(self.z)).wrapping_mul(i128::from(dz.signum()));
         // along the path: Z is |dz| of its length
-        let path = off.wrapping_mul(i128::from(motion.length)).checked_div(nm(dz).wrapping_abs()).unwrap_or(0);
+        let path = off.times(i128::from(motion.length)).over(nm(dz).wrapping_abs()).unwrap_or(0);
         let (numerator, denominator) = lead.ratio();
         let turns = path.wrapping_mul(i128::from(denominator) << 16);
-        let turns = turns.checked_div_euclid((i128::from(numerator) << 12).max(1)).unwrap_or(0);
+        let turns = turns.quotient((i128::from(numerator) << 12).max(1)).unwrap_or(0);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part of a turn")]
         let part = turns as u16;
         self.angle.wrapping_add(part)
@@ -57,7 +58,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let off = spindle.angle().wrapping_sub(spindle.zero()?);
         let turn = i64::from(spindle.turn()) << ANGLE_BITS;
         let part = i128::from(off.checked_rem_euclid(turn)?) << 16;
-        u16::try_from(part.checked_div(i128::from(turn))?).ok()
+        u16::try_from(part.over(i128::from(turn))?).ok()
     }
 }
 

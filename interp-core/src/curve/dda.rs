@@ -22,7 +22,7 @@ use super::line::Line;
 #[cfg(feature = "methods")]
 use super::point_comparison::ComparedArc;
 use super::{OneWay, Step, Walker};
-use crate::math::{root_wide, to_i64};
+use crate::math::{Wide, root_wide, to_i64};
 use crate::units::{Axis, Sense};
 
 /// A register that a count is added to or taken from; its overflow is a pulse.
@@ -164,7 +164,7 @@ impl IntegratedArc {
         let cut = 64_u32.wrapping_sub(longest.leading_zeros()).saturating_sub(56);
         let part = |gradient: i64, weight: i64| {
             let short = i128::from(gradient.wrapping_shr(cut));
-            let square = short.wrapping_mul(short).checked_div(i128::from(weight)).unwrap_or(0);
+            let square = short.times(short).over(i128::from(weight)).unwrap_or(0);
             square.saturating_mul(most)
         };
         let square = part(gx, a).saturating_add(part(gz, b));

@@ -99,7 +99,7 @@ impl Octants {
         let (cs, ds) = (c.wrapping_shr(spare), d.wrapping_shr(spare));
         let sum = b.saturating_mul(cs.times(cs)).saturating_add(a.saturating_mul(ds.times(ds)));
         let lowered = scale(a, b, a.wrapping_add(b)).times(f).wrapping_mul(4).wrapping_shr(spare.wrapping_mul(2));
-        let square = sum.checked_div(a.wrapping_add(b))?.wrapping_sub(lowered).max(0);
+        let square = sum.over(a.wrapping_add(b))?.wrapping_sub(lowered).max(0);
         let tangent = i128::from(root_wide(square.unsigned_abs())).wrapping_shl(spare);
         let whole = Self { sense, reach, end, a, b, c, d, f, leads: Leads::default(), loose: false, tangent };
         (tangent > 0).then_some(whole)

@@ -126,8 +126,8 @@ impl Metric {
         let coarser = if self.across > self.along { self.x } else { self.z };
         let size = i128::from(coarser.numerator()) << 12;
         let pulses = scale(radius, i128::from(coarser.denominator()), size).saturating_add(2);
-        let most = (1_i128 << 56).checked_div(pulses).unwrap_or(1).min(1 << 44);
-        match most.checked_div(largest) {
+        let most = (1_i128 << 56).over(pulses).unwrap_or(1).min(1 << 44);
+        match most.over(largest) {
             Some(times) if times >= 4096 => (x2.times(times), z2.times(times)),
             _ => (scale(x2, most, largest).max(1), scale(z2, most, largest).max(1)),
         }

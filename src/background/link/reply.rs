@@ -2,6 +2,7 @@
 
 use core::fmt::{self, Write};
 
+use interp_core::math::Wide;
 use interp_core::units::{Length, PulseSize};
 
 /// Writes a line.
@@ -55,10 +56,10 @@ impl fmt::Display for Thousandths {
 }
 
 /// `value * numerator / denominator`, rounded to nearest, half away from zero.
-pub(super) const fn scaled(value: i64, numerator: u64, denominator: u64) -> i64 {
+pub(super) fn scaled(value: i64, numerator: u64, denominator: u64) -> i64 {
     let twice = (value.unsigned_abs() as u128).saturating_mul(numerator as u128).saturating_mul(2);
     let half = denominator as u128;
-    let rounded = match twice.saturating_add(half).checked_div(half.saturating_mul(2)) {
+    let rounded = match twice.saturating_add(half).quotient(half.saturating_mul(2)) {
         Some(rounded) if rounded <= i64::MAX as u128 => rounded,
         Some(_) | None => i64::MAX as u128,
     };
