@@ -69,6 +69,7 @@ fn enumerated(motions: &[Motion]) -> Vec<Lattice> {
         match &motion.curve {
             Curve::Line(line, _) => line.walk().each_step(&mut take),
             Curve::Arc(arc) => arc.walk().each_step(&mut take),
+            #[cfg(feature = "methods")]
             _ => unreachable!(),
         }
     }
