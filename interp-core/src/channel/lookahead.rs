@@ -7,7 +7,7 @@
 //! Braking as hard as allowed from any planned state meets every joint; a change of the override therefore needs no
 //! more than a new pass, and a feed that is suddenly too high is approached gradually.
 //!
-//! A pass over all blocks takes longer than a tick has; it is a [sweep] of some blocks a tick.
+//! A pass over all blocks takes longer than a tick has; it is a sweep of some blocks a tick.
 
 pub(super) mod smooth;
 pub(super) mod sweep;
@@ -127,7 +127,7 @@ impl<const N: usize> Lookahead<N> {
         self.blocks.is_empty()
     }
 
-    /// Adds a block; it is planned by the next [`plan`](Self::plan).
+    /// Adds a block; it is planned by the next pass.
     pub fn push(&mut self, block: Block) {
         // the caller asked `has_room`; a full queue would show as a missing block, so it must not be full
         let swath = Swath::of(&block);
