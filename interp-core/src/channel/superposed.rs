@@ -202,9 +202,11 @@ impl Superposed {
             return 0;
         }
         // a step that would turn an axis round again is offered to what is added
-        let straight = strides.straight();
-        if waits && !shaper.faces(&straight) || self.opposes(&straight, shaper) {
-            return 0;
+        if !shaper.faces(strides) {
+            let straight = strides.straight();
+            if waits && !shaper.faces(&straight) || self.opposes(&straight, shaper) {
+                return 0;
+            }
         }
         let Some(next) = self.next() else { return count };
         // of two in one clock the added one comes first
@@ -220,7 +222,8 @@ impl Superposed {
             Some(false) => added.sign > 0,
             None => false,
         };
-        axis(&self.x, Axis::X) || axis(&self.z, Axis::Z)
+        // as a rule none turns
+        !shaper.faces(strides) && (axis(&self.x, Axis::X) || axis(&self.z, Axis::Z))
     }
 
     /// Whether a pulse is owed.
