@@ -19,6 +19,13 @@ struct Margin {
     length: u32,
 }
 
+impl Margin {
+    /// One in the place of this and a faster, longer one.
+    const fn and(self, faster: Self) -> Self {
+        Self { cap: self.cap, length: faster.length }
+    }
+}
+
 const NONE: Margin = Margin { cap: Speed::MAX, length: 0 };
 
 /// Length of a margin in which a mean over `ticks` may have `cap`, nm, rounded up. It is half a tick longer than the
@@ -51,7 +58,8 @@ impl Margins {
         self.add(Margin { cap, length: margin(cap, ticks) });
     }
 
-    /// Adds a margin. Where a fourth is needed, two become one with the slower speed and the larger length.
+    /// Adds a margin. Where there are four, two neighbours become one with the slower speed and the larger length: those whose
+    /// speeds differ least, so that a stop does not take the length of a fast joint near it.
     fn add(&mut self, new: Margin) {
         if self.0.iter().any(|known| known.cap <= new.cap && known.length >= new.length) {
             return;
@@ -61,21 +69,34 @@ impl Margins {
                 *known = NONE;
             }
         }
-        // the shortest first; no margin is the shortest
+        // the shortest, which is the slowest, first; no margin is the shortest
         self.sort();
-        let [first, second, third] = &mut self.0;
+        let [first, second, third] = self.0;
         if first.length == 0 {
-            *first = new;
-        } else if new.length < first.length {
-            first.cap = new.cap;
-        } else if new.length < second.length {
-            second.cap = new.cap;
-        } else if new.length < third.length {
-            third.cap = new.cap;
-        } else {
-            third.length = new.length;
+            self.0 = [new, second, third];
+            return self.sort();
         }
-        self.sort();
+        let [a, b, c, d] = if new.length < first.length {
+            [new, first, second, third]
+        } else if new.length < second.length {
+            [first, new, second, third]
+        } else if new.length < third.length {
+            [first, second, new, third]
+        } else {
+            [first, second, third, new]
+        };
+        // a smaller part of the faster one is lost
+        let closer = |(slow, fast): (Margin, Margin), (than_slow, than_fast): (Margin, Margin)| {
+            u64::from(fast.cap).saturating_mul(than_slow.cap.into())
+                <= u64::from(than_fast.cap).saturating_mul(slow.cap.into())
+        };
+        self.0 = if closer((a, b), (b, c)) && closer((a, b), (c, d)) {
+            [a.and(b), c, d]
+        } else if closer((b, c), (c, d)) {
+            [a, b.and(c), d]
+        } else {
+            [a, b, c.and(d)]
+        };
     }
 
     fn sort(&mut self) {
@@ -197,6 +218,17 @@ mod tests {
                 prop_assert_eq!(kept, asked);
             }
         }
+    }
+
+    /// A corner taken nearly at standstill, behind joints of a smooth run: its speed is kept for its own length only.
+    #[test]
+    fn a_stop_keeps_its_length_beside_fast_joints() {
+        let mut margins = Margins::EMPTY;
+        for (cap, length) in [(700, 700), (600, 600), (500, 500), (10, 10)] {
+            margins.add(Margin { cap, length });
+        }
+        let at = |place: u32| margins.0.iter().filter(|m| m.length >= place).map(|m| m.cap).min();
+        assert_eq!((at(10), at(11), at(500), at(501)), (Some(10), Some(500), Some(500), Some(600)));
     }
 
     #[test]
