@@ -140,8 +140,7 @@ fn measure(elf: &Path, plugin: &Path, folder: &Path, case: &Case) -> Result<Coun
         option.push_str(&format!(",h={name}:{at:x}:{:x}", at + size));
     }
     option.push_str(",worst=I2C3_ER");
-    let set: Vec<String> = case.2.iter().map(|text| (*text).to_owned()).collect();
-    let trial = Trial::new(case.program().as_bytes(), &set)?;
+    let trial = Trial::new(case.program().as_bytes(), &case.parameters())?;
     let played = emulate::play(elf, &trial, &["-plugin".into(), option])?;
     let text = fs::read_to_string(&counts).context("the plugin wrote nothing")?;
     let of = |wanted: &str| -> Result<Vec<u64>> {
