@@ -98,8 +98,8 @@ pub const fn root_wide(value: u128) -> u64 {
     root
 }
 
-/// Arithmetic of 128 bits as calls: in the code each such product takes a hundred instructions and more, a quotient three hundred, and where
-/// blocks are prepared space matters, not time.
+/// Arithmetic of 128 bits as calls: in the code each such product takes a hundred instructions and more, a quotient three
+/// hundred, and where blocks are prepared space matters, not time.
 pub trait Wide {
     /// The product modulo 2^128.
     #[must_use]
@@ -148,31 +148,11 @@ impl Wide for i128 {
     }
 }
 
-impl Wide for u128 {
-    #[inline(never)]
-    fn times(self, other: Self) -> Self {
-        self.wrapping_mul(other)
-    }
-
-    #[inline(never)]
-    fn squared(self) -> Self {
-        self.saturating_mul(self)
-    }
-
-    #[inline(never)]
-    fn quotient(self, divisor: Self) -> Option<Self> {
-        self.checked_div(divisor)
-    }
-
-    #[inline(never)]
-    fn rest(self, divisor: Self) -> Option<Self> {
-        self.checked_rem(divisor)
-    }
-
-    #[inline(never)]
-    fn over(self, divisor: Self) -> Option<Self> {
-        self.quotient(divisor)
-    }
+/// Quotient and remainder of 128 bits without sign, as a call like those of [`Wide`]; `None` for a divisor of 0.
+#[inline(never)]
+pub fn divided_wide(dividend: u128, divisor: u128) -> Option<(u128, u128)> {
+    let quotient = dividend.checked_div(divisor)?;
+    Some((quotient, dividend.wrapping_sub(quotient.wrapping_mul(divisor))))
 }
 
 /// `value * numerator / denominator` rounded to nearest, half toward plus infinity; saturates, and 0 where the
@@ -184,6 +164,14 @@ pub const fn scale(value: i128, numerator: i128, denominator: i128) -> i128 {
         Some(quotient) if denominator > 0 => quotient,
         _ => 0,
     }
+}
+
+/// So many percent of a speed or another number, rounded down; saturates. Without a division of 64 bits.
+pub fn percent(of: u32, percent: u16) -> u32 {
+    let percent = u32::from(percent);
+    let (hundreds, rest) = (of / 100, of % 100);
+    let part = rest.wrapping_mul(percent) / 100;
+    to_u32(u64::from(hundreds).wrapping_mul(percent.into()).wrapping_add(part.into()))
 }
 
 /// Quotient and remainder; the divisor is not zero.
@@ -456,6 +444,16 @@ mod tests {
             for bits in 0..32 {
                 assert_eq!(shifted(value, bits), value >> bits);
                 assert_eq!(shifted_signed(value.cast_signed(), bits), value.cast_signed() >> bits);
+            }
+        }
+    }
+
+    #[test]
+    fn percents_are_rounded_down_and_saturate() {
+        for of in (0..2_000).chain([99_999, 1 << 20, u32::MAX / 2, u32::MAX - 99, u32::MAX]) {
+            for part in [0, 1, 33, 99, 100, 101, 150, 200, u16::MAX] {
+                let exact = u64::from(of) * u64::from(part) / 100;
+                assert_eq!(u64::from(percent(of, part)), exact.min(u32::MAX.into()));
             }
         }
     }

@@ -18,6 +18,7 @@ use interp_core::block::shoulder::{Shoulder, free};
 use interp_core::block::{Feed, Speed};
 use interp_core::channel::{Pull, State};
 use interp_core::drive::Drive;
+use interp_core::math::percent;
 use interp_core::units::Lattice;
 
 /// Lengths nearer than this, 16 nm with 12 fraction bits, are one place: on an arc the last nm are too little to plan with.
@@ -282,10 +283,4 @@ impl Foreground<'_> {
             (false, Feed::PerTurn(lead)) => self.channel.per_turn(lead),
         }
     }
-}
-
-/// So many percent of a speed.
-#[inline(never)]
-fn percent(speed: Speed, percent: u16) -> Speed {
-    u32::try_from(u64::from(speed).wrapping_mul(u64::from(percent)) / 100).unwrap_or(u32::MAX)
 }

@@ -4,7 +4,7 @@
 //! [`RADIUS_LIMIT_NM`], 4.2 m; a centre is then within 6.3 m and anything from it within 8.4 m. Squares of these stay
 //! below 2^67, the one product of two squares (in [`by_radius`]) below 2^128.
 
-use interp_core::math::Wide;
+use interp_core::math::divided_wide;
 use interp_core::units::{Point, Sense};
 
 use super::decimal::Distance;
@@ -177,12 +177,12 @@ fn half(chord: u128) -> Distance {
 /// at most `(4.2 m)^2`. The quarter's remainder is put back.
 fn root_of_share(part: u128, excess: u128, chord: u128) -> (i64, bool) {
     let product = part.saturating_mul(excess >> 2);
-    let quarter = product.quotient(chord).unwrap_or(0);
-    let left = product.rest(chord).unwrap_or(0);
+    let (quarter, left) = divided_wide(product, chord).unwrap_or((0, 0));
     let left = left.saturating_mul(4).saturating_add(part.saturating_mul(excess & 3));
-    let whole = quarter.saturating_mul(4).saturating_add(left.quotient(chord).unwrap_or(0));
+    let (more, left) = divided_wide(left, chord).unwrap_or((0, 1));
+    let whole = quarter.saturating_mul(4).saturating_add(more);
     let root = isqrt(whole);
-    let exact = left.rest(chord) == Some(0) && root.saturating_mul(root) == whole;
+    let exact = left == 0 && root.saturating_mul(root) == whole;
     (i64::try_from(root).unwrap_or(i64::MAX), exact)
 }
 

@@ -6,7 +6,7 @@
 
 use core::fmt::{self, Write as _};
 
-use interp_core::math::Wide;
+use interp_core::math::divided_wide;
 use interp_core::units::Length;
 
 /// Sign as written.
@@ -139,7 +139,7 @@ impl Number {
     pub fn scaled(self, unit: u32) -> Option<i64> {
         let one = u128::from(10_u64.checked_pow(u32::from(self.decimals))?);
         let twice = u128::from(self.mantissa).checked_mul(u128::from(unit))?.checked_mul(2)?;
-        let magnitude = twice.checked_add(one)?.quotient(one.checked_mul(2)?)?;
+        let (magnitude, _) = divided_wide(twice.checked_add(one)?, one.checked_mul(2)?)?;
         let magnitude = i64::try_from(magnitude).ok()?;
         if self.is_negative() { magnitude.checked_neg() } else { Some(magnitude) }
     }

@@ -14,7 +14,7 @@ use crate::drive::gearing::{Gearing, Lead};
 use crate::drive::spindle::{COUNT, Spindle};
 use crate::drive::wheel::{Click, Wheel};
 use crate::drive::{BackEnd, Drive, DriveRefusal, Driven, Inputs, ThreadStage};
-use crate::math::to_u32;
+use crate::math::{percent, to_u32};
 use crate::train::Train;
 use core::borrow::BorrowMut;
 
@@ -135,8 +135,7 @@ impl Active {
     pub(super) fn repace(&mut self, overrides: Overrides, crank: &Crank) {
         if matches!(self.motion.feed, Feed::PerTurn(_)) {
             // the override that it is paced at stays none, so it is found anew in every tick
-            let scaled = u64::from(crank.per_turn()).wrapping_mul(u64::from(overrides.feed)) / 100;
-            self.pace = to_u32(scaled).min(self.motion.limit);
+            self.pace = percent(crank.per_turn(), overrides.feed).min(self.motion.limit);
         } else {
             (self.pace, self.paced_at) = (pace(&self.motion, overrides), overrides);
         }

@@ -16,7 +16,7 @@ use super::margins::Margins;
 use super::swath::{Groups, Swath};
 use crate::block::{Block, Feed, Motion, Speed, Work};
 use crate::governor::{UNLIMITED, square};
-use crate::math::to_u32;
+use crate::math::percent;
 use heapless::Deque;
 use sweep::{LINEAR, Pass, Sweep};
 
@@ -85,13 +85,7 @@ impl Overrides {
 
 /// Speed of a motion under overrides; that of one that follows the spindle is not known, and planned with its limit.
 pub fn pace(motion: &Motion, overrides: Overrides) -> Speed {
-    let percent = |speed: Speed, percent: u16| {
-        // without a division of 64 bits
-        let (hundreds, rest) = (speed / 100, speed % 100);
-        let percent = u32::from(percent);
-        let part = u64::from(rest.wrapping_mul(percent) / 100);
-        to_u32(u64::from(hundreds).wrapping_mul(percent.into()).wrapping_add(part)).min(motion.limit)
-    };
+    let percent = |speed: Speed, part: u16| percent(speed, part).min(motion.limit);
     match motion.feed {
         Feed::PerTurn(_) | Feed::Thread(..) => motion.limit,
         Feed::Rapid if overrides.rapid == 100 => motion.limit,

@@ -1,6 +1,6 @@
 //! A fixed ratio that lengths are multiplied by, prepared so that the foreground needs one 32-bit product.
 
-use crate::math::{Wide, shifted, to_u32, to_u64};
+use crate::math::{divided_wide, shifted, to_u32, to_u64};
 
 /// `length * factor`, the factor as a 31-bit mantissa: relative error below 2^-30.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -25,8 +25,8 @@ impl Proportion {
         if short > 0 {
             after = short.min(62);
         }
-        let factor = match top.wrapping_shl(after).quotient(u128::from(denominator)) {
-            Some(quotient) => to_u32(to_u64(i128::try_from(quotient).unwrap_or(i128::MAX))),
+        let factor = match divided_wide(top.wrapping_shl(after), u128::from(denominator)) {
+            Some((quotient, _)) => to_u32(to_u64(i128::try_from(quotient).unwrap_or(i128::MAX))),
             None => 0,
         };
         let byte = |v: u32| u8::try_from(v).unwrap_or(0);

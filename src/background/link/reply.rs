@@ -2,7 +2,7 @@
 
 use core::fmt::{self, Write};
 
-use interp_core::math::Wide;
+use interp_core::math::divided_wide;
 use interp_core::units::{Length, PulseSize};
 
 /// Writes a line.
@@ -59,8 +59,8 @@ impl fmt::Display for Thousandths {
 pub(super) fn scaled(value: i64, numerator: u64, denominator: u64) -> i64 {
     let twice = (value.unsigned_abs() as u128).saturating_mul(numerator as u128).saturating_mul(2);
     let half = denominator as u128;
-    let rounded = match twice.saturating_add(half).quotient(half.saturating_mul(2)) {
-        Some(rounded) if rounded <= i64::MAX as u128 => rounded,
+    let rounded = match divided_wide(twice.saturating_add(half), half.saturating_mul(2)) {
+        Some((rounded, _)) if rounded <= i64::MAX as u128 => rounded,
         Some(_) | None => i64::MAX as u128,
     };
     #[expect(clippy::cast_possible_truncation, reason = "at most i64::MAX, checked above")]
