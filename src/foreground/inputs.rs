@@ -69,6 +69,19 @@ impl Inputs {
             scales: PerAxis { x: None, z: None },
         }
     };
+
+    /// Whether anything is touched. The spindle is read in every tick, whoever attends.
+    pub(super) const fn is_touched(&self) -> bool {
+        let Self { wheels, contour, spindle: _, joystick, rapid, ends, guard, scales } = self;
+        let Ends { plus, minus } = ends.x;
+        let Ends { plus: plus_z, minus: minus_z } = ends.z;
+        let switched = plus | minus | plus_z | minus_z | *rapid | *guard;
+        wheels.x | wheels.z | *contour != 0
+            || switched
+            || !matches!(joystick, Joystick::Off)
+            || scales.x.is_some()
+            || scales.z.is_some()
+    }
 }
 
 /// Readings of a tick.

@@ -152,14 +152,14 @@ impl<'q> Foreground<'q> {
 
     /// Takes the readings of a tick, to be called before it. Counts of wheels that no tick has taken add up.
     pub fn read(&mut self, inputs: &Inputs) {
-        let before = self.desk.inputs;
-        // the spindle is read in every tick, whoever attends; what lasts is seen by `Desk::acts`
-        self.attended |= Inputs { spindle: None, ..*inputs } != Inputs::NONE;
+        // what lasts is seen by `Desk::acts`
+        self.attended |= inputs.is_touched();
+        let Inputs { wheels, contour, .. } = self.desk.inputs;
         self.desk.inputs = *inputs;
         let now = &mut self.desk.inputs;
-        now.wheels.x = now.wheels.x.saturating_add(before.wheels.x);
-        now.wheels.z = now.wheels.z.saturating_add(before.wheels.z);
-        now.contour = now.contour.saturating_add(before.contour);
+        now.wheels.x = now.wheels.x.saturating_add(wheels.x);
+        now.wheels.z = now.wheels.z.saturating_add(wheels.z);
+        now.contour = now.contour.saturating_add(contour);
     }
 
     /// Raises an alarm. An earlier one stays, unless this one is an emergency stop.
