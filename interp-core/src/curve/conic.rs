@@ -231,10 +231,10 @@ fn raised(weight: i128, coordinate: i128) -> i128 {
     weight.times(coordinate.squared() >> (2 * FINE - SQUARED))
 }
 
-/// Whether a deviation is more than what two pulses change it by.
-fn is_off(deviation: i128, by_a_pulse: (i128, i128)) -> bool {
-    let longer = by_a_pulse.0.saturating_abs().max(by_a_pulse.1.saturating_abs());
-    deviation.saturating_abs() > longer.saturating_mul(2)
+/// The squares of a coordinate that is two pulses nearer to 0 and two pulses further from it.
+fn squares_beside(coordinate: i128, pulse: PulseSize) -> (i128, i128) {
+    let (distance, two) = (coordinate.saturating_abs(), size(pulse).wrapping_mul(2));
+    (distance.wrapping_sub(two).max(0).squared(), distance.wrapping_add(two).squared())
 }
 
 impl Ellipse {
@@ -290,21 +290,20 @@ impl Ellipse {
         Conic::new(Octants::beside([a, b, c, d, f], to, (sense, reach)))
     }
 
-    /// Whether a lattice point is more than two pulses off the ellipse.
+    /// Whether the ellipse passes a lattice point by more than two pulses: outside the rectangle of two pulses each way
+    /// about it. What two pulses change by the gradient alone is too little at the end of a slim axis.
     fn is_off(&self, (x, z): (PulseSize, PulseSize), at: Lattice) -> bool {
         let (u, v) = (place(x, at.x, self.centre.0), place(z, at.z, self.centre.1));
-        let (half_x, half_z) = (i128::from(self.half_axes.0.nm()), i128::from(self.half_axes.1.nm()));
         if u.abs().max(v.abs()) >= 1 << 32 {
             return true;
         }
-        // u^2 S_z^2 + v^2 S_x^2 - S_x^2 S_z^2, below 2^127, and what a pulse changes it by
-        let (square_x, square_z) = (half_x.times(half_x), half_z.times(half_z));
-        let deviation = u.times(u).times(square_z).saturating_add(v.times(v).times(square_x));
-        let deviation = deviation.saturating_sub(square_x.times(square_z));
-        is_off(
-            deviation,
-            (u.wrapping_mul(2).times(square_z).times(size(x)), v.wrapping_mul(2).times(square_x).times(size(z))),
-        )
+        // u^2 S_z^2 + v^2 S_x^2 beside S_x^2 S_z^2, below 2^127
+        let (square_x, square_z) =
+            (i128::from(self.half_axes.0.nm()).squared(), i128::from(self.half_axes.1.nm()).squared());
+        let ((near_u, far_u), (near_v, far_v)) = (squares_beside(u, x), squares_beside(v, z));
+        let reach = |u: i128, v: i128| u.times(square_z).saturating_add(v.times(square_x));
+        let whole = square_x.times(square_z);
+        reach(near_u, near_v) > whole || reach(far_u, far_v) < whole
     }
 }
 
@@ -378,16 +377,16 @@ impl Parabola {
         Conic::new(Octants::beside(conic, to, (sense, Reach::Short)))
     }
 
-    /// Whether a lattice point is more than two pulses off the parabola.
+    /// Whether the parabola passes a lattice point by more than two pulses, as for an ellipse.
     fn is_off(&self, (x, z): (PulseSize, PulseSize), at: Lattice) -> bool {
         let (dx, dz) = (place(x, at.x, self.vertex.0), place(z, at.z, self.vertex.1));
-        let (across, along, across_size, along_size) = match self.axis {
-            Axis::Z => (dx, dz, size(x), size(z)),
-            Axis::X => (dz, dx, size(z), size(x)),
+        let (across, along, along_pulse) = match self.axis {
+            Axis::Z => (squares_beside(dx, x), dz, z),
+            Axis::X => (squares_beside(dz, z), dx, x),
         };
         let twice = i128::from(self.parameter.nm()).wrapping_mul(2);
-        let deviation = across.times(across).wrapping_sub(twice.times(along));
-        is_off(deviation, (across.wrapping_mul(2).times(across_size), twice.times(along_size)))
+        let (opens, two) = (twice.times(along), twice.saturating_abs().times(size(along_pulse).wrapping_mul(2)));
+        across.0 > opens.saturating_add(two) || across.1 < opens.saturating_sub(two)
     }
 }
 
