@@ -231,6 +231,12 @@ impl<const N: usize> Lookahead<N> {
         pass
     }
 
+    /// Whether all is planned, with these overrides: as in most ticks.
+    #[inline]
+    pub(super) fn is_planned_with(&self, overrides: Overrides) -> bool {
+        overrides == self.overrides && self.is_planned()
+    }
+
     /// Whether all is planned.
     pub(super) const fn is_planned(&self) -> bool {
         self.sweep.is_over(self.blocks.len())

@@ -386,6 +386,10 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         if self.window.ticks() > 0 {
             self.stand_late();
         }
+        let planned = self.crank.planned_with(self.overrides);
+        if self.memory.borrow().ahead.is_planned_with(planned) {
+            return;
+        }
         let work = if self.fence.is_calm(self.tool()) { WORK } else { LESS_WORK };
         let Memory { ahead, trail } = self.memory.borrow_mut();
         let active = match &self.current {
@@ -399,7 +403,6 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             Current::Motion(active) => Some(&active.motion),
             Current::Nothing | Current::Dwell(_) => None,
         };
-        let planned = self.crank.planned_with(self.overrides);
         match (self.window.ticks(), self.crank.drive) {
             (0, _) | (_, Drive::Spindle(_) | Drive::Wheel(_)) => ahead.plan(active, planned, work),
             (ticks, Drive::Time) => ahead.plan_smooth(active, planned, work, ticks),
