@@ -169,7 +169,7 @@ impl Desk {
             || self.own_path
             || self.starting
             || !matches!(self.nulling, Nulling::No)
-            || self.inputs != Inputs::NONE
+            || self.inputs.is_touched()
             || !self.wheels.rest()
     }
 

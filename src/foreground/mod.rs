@@ -188,10 +188,14 @@ impl<'q> Foreground<'q> {
 
     /// Does what an operator does: a request at once, a turn of the wheels in the tick to come.
     pub fn act(&mut self, act: Act) {
-        self.attended = true;
         match act {
             Act::Command(command) => self.obey(command),
-            Act::Wheels(..) | Act::Spindle(_) => act.read(&mut self.desk.inputs),
+            // the spindle is read in every tick, whoever attends
+            Act::Spindle(_) => act.read(&mut self.desk.inputs),
+            Act::Wheels(..) => {
+                self.attended = true;
+                act.read(&mut self.desk.inputs);
+            }
         }
     }
 
