@@ -63,7 +63,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let line = gearing.at(foretold.angle);
         let feed = gearing.travel(foretold.rate);
         let gain = gearing.travel(foretold.acceleration);
-        let count = to_u32(gearing.along(COUNT).unsigned_abs());
+        let count = gearing.count();
         let distance = line.wrapping_sub(self.crank.tool);
         let held = if self.crank.in_thread {
             self.crank.thread.is_path_held(self.state)
@@ -130,15 +130,15 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// made under that one, unless the speed would jump. Then the path falls in with its line as at the start.
     fn over_thread_joint(&mut self, advance: i64) -> i64 {
         let back = advance < 0;
-        let room = self.room(back).cast_signed();
-        if !self.crank.in_thread || advance.saturating_abs() <= room {
+        let room = self.room(back);
+        if !self.crank.in_thread || advance.unsigned_abs() <= room {
             return advance;
         }
         let Some(&Motion { feed: Feed::Thread(lead, _), accel, .. }) = self.neighbour(back) else { return advance };
         let Some(gearing) = self.crank.gearing.as_mut().filter(|gearing| gearing.lead() != lead) else {
             return advance;
         };
-        let room = if back { room.wrapping_neg() } else { room };
+        let room = if back { room.cast_signed().wrapping_neg() } else { room.cast_signed() };
         let jump = gearing.converted(advance, lead).wrapping_sub(advance);
         let beyond = gearing.converted(advance.wrapping_sub(room), lead);
         gearing.change(lead, self.crank.tool.wrapping_add(room));

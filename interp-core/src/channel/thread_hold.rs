@@ -220,10 +220,15 @@ impl ThreadHold {
     /// What is wrong with the spindle while a groove is cut.
     fn look(&mut self, spindle: &Spindle) -> Option<Trouble> {
         let rate = spindle.foretold().rate;
-        let forward = if self.peak < 0 { rate.wrapping_neg() } else { rate };
-        let peak = self.peak.unsigned_abs().max(forward.max(0).unsigned_abs());
-        self.peak = if self.peak < 0 { peak.cast_signed().wrapping_neg() } else { peak.cast_signed() };
-        let least = (peak >> HARDLY).max(TURNING).cast_signed();
+        let (forward, peak) =
+            if self.peak < 0 { (rate.wrapping_neg(), self.peak.wrapping_neg()) } else { (rate, self.peak) };
+        let peak = if forward > peak {
+            self.peak = rate;
+            forward
+        } else {
+            peak
+        };
+        let least = (peak >> HARDLY).max(TURNING.cast_signed());
         self.slow = if forward < least { self.slow.saturating_add(1) } else { 0 };
         if forward < least.wrapping_neg() {
             Some(Trouble::Reversed)

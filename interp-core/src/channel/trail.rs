@@ -274,6 +274,9 @@ impl Trail {
 
     /// A tick's step toward a window that reaches far enough both ways, first where the tool goes to.
     pub(super) fn slide(&mut self, back: bool, maker: &mut Maker) {
+        if self.history.is_within(self.window.len()) {
+            return;
+        }
         let Some(place) = self.wanted(back) else { return };
         if let Some(trod) = maker.step(place, &self.history) {
             self.insert(trod);
@@ -289,7 +292,7 @@ impl Trail {
             || self.history.before(front.place).filter(|place| self.history.can_be_made(*place) && !self.is_held());
         let after = || self.history.after(last.place);
         let older = || if older < most_older { before() } else { None };
-        let newer = || if newer < most_newer { after() } else { None };
+        let newer = || if self.short && newer < most_newer { after() } else { None };
         if back { older().or_else(newer) } else { newer().or_else(older) }
     }
 

@@ -44,8 +44,14 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     pub(super) fn walk(&mut self, by: i64, out: &mut impl Train) -> i64 {
         let back = by < 0;
         let (mut left, mut clock) = (by.unsigned_abs(), 0_u32);
-        while left > 0 && self.enter(back) {
-            let room = self.room(back);
+        while left > 0 {
+            let mut room = self.room(back);
+            if room == 0 {
+                if !self.enter(back) {
+                    break;
+                }
+                room = self.room(back);
+            }
             let budget = TICK_CLOCKS.wrapping_sub(clock);
             let clocks = if left < room { budget } else { share(budget, room, left) };
             let by = left.min(room);

@@ -48,7 +48,7 @@ pub fn approach(distance: u64, accel: u32) -> i64 {
 pub(crate) const fn is_far(room: u64, advance: u64, accel: u32) -> bool {
     let accel = if accel == 0 { 1 } else { accel as u64 };
     advance >> 31 == 0
-        && room >= accel.saturating_mul(2).saturating_add(6)
+        && room >= accel.wrapping_mul(2).wrapping_add(6)
         && advance.wrapping_mul(advance) <= accel.saturating_mul(room)
 }
 

@@ -98,6 +98,8 @@ pub struct Gearing {
     ratio: Proportion,
     /// A turn of the spindle, [`ANGLE_BITS`].
     turn: i64,
+    /// Path a count, rounded down.
+    count: u32,
     /// Path a turn, and what is over in `1 / per` of a unit.
     whole: i64,
     over: u32,
@@ -118,10 +120,12 @@ impl Gearing {
         let turn = i64::from(counts.max(1)) << ANGLE_BITS;
         let (whole, over) = lead.units();
         let length = turn.unsigned_abs();
+        let ratio = Proportion::new(whole.unsigned_abs(), length, length);
         Self {
             lead,
-            ratio: Proportion::new(whole.unsigned_abs(), length, length),
+            ratio,
             turn,
+            count: to_u32(ratio.of(COUNT.unsigned_abs())),
             whole,
             over,
             per: lead.per.max(1),
@@ -203,8 +207,13 @@ impl Gearing {
         self.base.wrapping_add(self.along(self.part))
     }
 
+    /// The path that a count is worth, rounded down.
+    pub const fn count(&self) -> u32 {
+        self.count
+    }
+
     /// The path that a turn by `angle`, less than a whole one, is worth.
-    pub fn along(&self, angle: i64) -> i64 {
+    fn along(&self, angle: i64) -> i64 {
         let path = self.ratio.of(angle.unsigned_abs()).cast_signed();
         if angle < 0 { path.wrapping_neg() } else { path }
     }

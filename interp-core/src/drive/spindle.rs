@@ -37,7 +37,7 @@ const BETA: i64 = 3 * 3 * 3 * (16 + 13) * 8;
 const GAMMA: i64 = 3 * 3 * 3 * 16;
 
 /// Counts that an index pulse may be off.
-pub const INDEX_TOLERANCE: i64 = 2;
+pub const INDEX_TOLERANCE: u32 = 2;
 
 /// A reading of the encoder at the start of a tick.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -171,7 +171,7 @@ impl Spindle {
 
     /// Counts by which the last index pulse was off, where that is more than may be.
     pub fn lost(&self) -> Option<i32> {
-        (i64::from(self.off).saturating_abs() > INDEX_TOLERANCE).then_some(self.off)
+        (self.off.unsigned_abs() > INDEX_TOLERANCE).then_some(self.off)
     }
 
     /// The angle at the end of the tick that is being made.

@@ -59,6 +59,11 @@ impl History {
         self.used = 0;
     }
 
+    /// Whether there are no more than so many motions.
+    pub(super) fn is_within(&self, motions: usize) -> bool {
+        usize::try_from(self.used).is_ok_and(|used| used <= motions)
+    }
+
     /// The place of the motion noted last.
     pub(super) const fn newest(&self) -> u32 {
         self.newest
