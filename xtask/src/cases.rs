@@ -97,7 +97,7 @@ const EVERYTHING: [&str; 21] = [
 /// Beside [`EVERYTHING`]: 75 mm before the soft limits to plus, near enough that every tick asks whether they are kept.
 const BEFORE_LIMITS: [&str; 2] = ["x.limit_plus_mm=75", "z.limit_plus_mm=75"];
 
-pub(crate) const CASES: [Case; 19] = [
+pub(crate) const CASES: [Case; 20] = [
     Case("line 4:3, X at 80 kHz", Text("G21 G90\nG4 P0.05\nG1 X40 Z30 F6000\nM2\n"), &[&PULSES]),
     Case("arc, R 10 mm, 25 kHz", Text("G21 G90\nG4 P0.05\nG3 X-10 Z-10 I-10 K0 F1500\nM2\n"), &[&PULSES]),
     // its centre lies between the lattice lines, so the walk needs 64 bits
@@ -121,7 +121,16 @@ pub(crate) const CASES: [Case; 19] = [
         Text("G21 G90\nM3 S1000\nG4 P0.05\nG95 G1 X40 Z30 F6\nM2\n"),
         &[&PULSES, &SPINDLE],
     ),
-    Case("thread, lead 4.8 mm, 80 kHz", Text("G21 G90\nM3 S1000\nG4 P0.05\nG33 Z30 K4.8\nM2\n"), &[&PULSES, &SPINDLE]),
+    Case(
+        "thread of 30 mm, lead 4.8 mm, 80 kHz",
+        Text("G21 G90\nM3 S1000\nG4 P0.05\nG33 Z30 K4.8\nM2\n"),
+        &[&PULSES, &SPINDLE],
+    ),
+    Case(
+        "thread of 120 mm, lead 4.8 mm, 80 kHz",
+        Text("G21 G90\nM3 S1000\nG4 P0.05\nG33 Z120 K4.8\nM2\n"),
+        &[&PULSES, &SPINDLE],
+    ),
     Case("line 1:1, everything, 2 x 100 kHz", Text("G21 G90\nG4 P0.05\nG1 X60 Z60 F8485\nM2\n"), &[&EVERYTHING]),
     Case(
         "arc, R 50 mm, everything, 141 kHz",

@@ -87,8 +87,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut cases = Map::new();
     for (name, counts) in &counted {
         // the two cases of one curve with the fewest and the most steps a tick, under the linear law and uncompensated
-        let plain = |name: &str| !["law", "compensated", "everything", "turn"].iter().any(|other| name.contains(other));
-        let kin = counted.iter().filter(|(other, _)| plain(other) && other.split(' ').next() == name.split(' ').next());
+        let plain = |name: &str| {
+            !["law", "compensated", "everything", "turn", "thread"].iter().any(|other| name.contains(other))
+        };
+        let kin = counted.iter().filter(|(other, _)| plain(other) && other.contains("arc") == name.contains("arc"));
         let per_step = slope(kin.map(|(_, counts)| counts));
         cases.insert((*name).into(), figures(counts, per_step));
     }
@@ -216,30 +218,37 @@ impl Counts {
     }
 }
 
-/// What `interpolate` takes for each step event more: from the usual ticks of the slowest and the fastest case.
-fn slope<'a>(cases: impl Iterator<Item = &'a Counts>) -> f64 {
+/// What `interpolate` takes for each step event more: from the usual ticks of the slowest and the fastest case; `None` where
+/// their steps are too much alike to tell.
+fn slope<'a>(cases: impl Iterator<Item = &'a Counts>) -> Option<f64> {
     let mut usual: Vec<(f64, f64)> = cases.map(Counts::usual).collect();
     usual.sort_by(|a, b| a.0.total_cmp(&b.0));
     match (usual.first(), usual.last()) {
-        (Some(slow), Some(fast)) if fast.0 > slow.0 => (fast.1 - slow.1) / (fast.0 - slow.0),
-        _ => 0.0,
+        (Some(slow), Some(fast)) if fast.0 > slow.0 * 1.5 => Some((fast.1 - slow.1) / (fast.0 - slow.0)),
+        _ => None,
     }
 }
 
-fn figures(counts: &Counts, per_step: f64) -> Value {
+fn figures(counts: &Counts, per_step: Option<f64>) -> Value {
     let (ticks, most, full) = (&counts.ticks, counts.most, counts.full());
     // the programs begin with a dwell; its first tick takes the block
     let idle: Vec<Tick> =
         ticks.iter().take_while(|tick| tick.steps == 0).skip(2).map(|tick| Tick { steps: 1, ..*tick }).collect();
     let idle = idle.get(..idle.len().saturating_sub(1)).unwrap_or_default().to_vec();
     let calls = &counts.calls;
-    let fixed: Vec<f64> = ticks
-        .iter()
-        .filter(|tick| tick.steps > 0)
-        .map(|tick| (tick.interpolate as f64 - per_step * tick.steps as f64).max(0.0))
-        .collect();
-    let mean = fixed.iter().sum::<f64>() / fixed.len().max(1) as f64;
-    let (steps, cost) = counts.usual();
+    let besides = per_step.map(|per_step| {
+        let fixed: Vec<f64> = ticks
+            .iter()
+            .filter(|tick| tick.steps > 0)
+            .map(|tick| (tick.interpolate as f64 - per_step * tick.steps as f64).max(0.0))
+            .collect();
+        let (steps, cost) = counts.usual();
+        json!({
+            "at_full_speed": rounded(cost - per_step * steps),
+            "mean": rounded(fixed.iter().sum::<f64>() / fixed.len().max(1) as f64),
+            "worst": rounded(fixed.iter().copied().fold(0.0, f64::max)),
+        })
+    });
     let of_the_worst: Map<String, Value> =
         counts.costliest.iter().take(FUNCTIONS).map(|(name, times)| (name.clone(), json!(times))).collect();
     json!({
@@ -255,12 +264,8 @@ fn figures(counts: &Counts, per_step: f64) -> Value {
             "mean": rounded(ticks.iter().map(|tick| tick.interpolate).sum::<u64>() as f64 / ticks.len() as f64),
             "worst": ticks.iter().map(|tick| tick.interpolate).max(),
             "of_the_worst": of_the_worst,
-            "for_each_step_event": rounded(per_step),
-            "besides": {
-                "at_full_speed": rounded(cost - per_step * steps),
-                "mean": rounded(mean),
-                "worst": rounded(fixed.iter().copied().fold(0.0, f64::max)),
-            },
+            "for_each_step_event": per_step.map(rounded),
+            "besides": besides,
         },
         "per_idle_tick": {
             "pulse": mean_and_worst(&idle, |tick| tick.pulse),
