@@ -3,7 +3,8 @@
 //! [`Outline`] is all that is not known from the machine. An [`Again`] makes the motion of it, equal to the first one bit
 //! for bit since the very same functions make it, in steps of a few thousand instructions.
 
-use super::{Bearings, Builder, Curve, Feed, Motion, Speed};
+use super::builder::Bearings;
+use super::{Builder, Curve, Feed, Motion, Speed};
 use crate::curve::arc::Arc;
 use crate::curve::line::Line;
 use crate::curve::preparation::{Preparation, Round, Step};

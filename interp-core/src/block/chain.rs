@@ -26,7 +26,8 @@
 //! ([`quartic`]). A tangent of a parabola through three of them is off by some p / 16 R, p being the pulse: at a small
 //! `max_jump` the joints of two chords would seem corners.
 
-use super::{Builder, Curve, Direction, Limited, Motion, Pace, Run, Speed, length};
+use super::builder::{Direction, Run, length};
+use super::{Builder, Curve, Limited, Motion, Pace, Speed};
 use crate::config::FRACTION_BITS;
 use crate::curve::line::Line;
 use crate::curve::proportion::Proportion;

@@ -16,8 +16,9 @@
 //! which is that of the quarter that turns most for its length. Parts are as long as the cubic timeline allows: within
 //! a 24th of a pulse at the quarters, else half as long.
 
+use super::builder::{CURVATURE_SHARE, Direction, Run};
 use super::chain::{angle_between, extent, unit};
-use super::{Builder, Curve, Direction, Limited, Motion, Pace, Run};
+use super::{Builder, Curve, Limited, Motion, Pace};
 use crate::curve::arc::Arc;
 use crate::curve::conic::{Conic, ConicRefusal, Ellipse, Parabola};
 use crate::curve::conic_part::ConicPart;
@@ -149,7 +150,7 @@ impl Pieces {
         let by_axis = builder.speed_limit(draft.extent);
         let accel = builder.machine.x.accel.min(builder.machine.z.accel);
         // v^2 = 0.998 a R
-        let square = u128::from(accel).saturating_mul(u128::from(radius)).saturating_mul(super::CURVATURE_SHARE) / 1000;
+        let square = u128::from(accel).saturating_mul(u128::from(radius)).saturating_mul(CURVATURE_SHARE) / 1000;
         let run = Run {
             length,
             reach: length,
