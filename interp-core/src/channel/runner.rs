@@ -17,7 +17,8 @@ use super::conic::ConicRunner;
 use super::superposed::Superposed;
 use crate::block::Curve;
 use crate::curve::arc::Arc;
-use crate::curve::arc_walker::{ArcWalker, Word};
+use crate::curve::arc_row::Word;
+use crate::curve::arc_walker::ArcWalker;
 use crate::curve::line::LineWalker;
 #[cfg(feature = "methods")]
 use crate::curve::method::Method;

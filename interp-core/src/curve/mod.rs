@@ -9,6 +9,7 @@
 //! lattice line. So the tangential feed is even at every direction, and no error adds up along the curve.
 
 pub mod arc;
+pub(crate) mod arc_row;
 pub mod arc_walker;
 mod around;
 pub mod conic;
