@@ -138,6 +138,15 @@ fn run_late(machine: Machine, works: Vec<Work>, deeds: &[(usize, Deed)], arrived
     let mut channel = Channel::<72>::new(&machine, interp_core::units::Lattice::default());
     let mut given = 0;
     let (mut advance, mut percent) = (Vec::new(), Vec::new());
+    // where each work ends on the path; of a motion's last tick the speed is 0 already, though it moved
+    let ends: Vec<u64> = works
+        .iter()
+        .scan(0, |at, work| {
+            *at += if let Work::Motion(motion) = work { motion.length } else { 0 };
+            Some(*at)
+        })
+        .collect();
+    let mut at = 0;
     channel.start();
     let mut deeds = deeds.iter().peekable();
     for tick in 0.. {
@@ -153,10 +162,16 @@ fn run_late(machine: Machine, works: Vec<Work>, deeds: &[(usize, Deed)], arrived
         let mut source = || {
             let work = works.get(given).filter(|_| given < limit).copied()?;
             given += 1;
-            Some(Block { line: 1, work })
+            Some(Block { line: u32::try_from(given).unwrap(), work })
         };
         let report = channel.tick(&mut source, &mut |_: Event| {});
-        advance.push(f64::from(report.speed));
+        let before = at;
+        at = match ((report.line as usize).checked_sub(1), report.state) {
+            (Some(work), _) => ends[work] - channel.to_go(),
+            (None, State::Ended) => *ends.last().unwrap(),
+            (None, _) => at,
+        };
+        advance.push((at - before) as f64);
         percent.push(channel.feed_override());
         if matches!(report.state, State::Ended) || matches!(report.state, State::Idle) && tick > 100 {
             break;
