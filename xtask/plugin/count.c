@@ -6,10 +6,11 @@
  * included, callees included, handlers that preempted it not. At its end there are the instructions of the costliest call
  * of the handler `worst` names, as lines `at ADDRESS TIMES`.
  *
- * A handler begins when its first instruction is executed. A return instruction in its own body ends it, unless the
- * next instruction executed is the one behind it (a return whose condition failed): a handler is entered by the
- * hardware only, so such an instruction is always a return from the exception. Handlers must not end in a tail call;
- * RTIC's don't, since they restore BASEPRI last. What does not fit is counted and written as `anomalies N` at the end.
+ * A handler begins when its first instruction is executed. A return instruction in its own body ends it, unless it goes
+ * on with the one behind it (a return whose condition failed): a handler is entered by the hardware only, so such an
+ * instruction is always a return from the exception. Where another handler begins in between, which of both it was
+ * shows when that one is over, or when the first begins anew. Handlers must not end in a tail call; RTIC's don't, since
+ * they restore BASEPRI last. What does not fit is counted and written as `anomalies N` at the end.
  */
 #include <stdbool.h>
 #include <stdint.h>
@@ -35,11 +36,10 @@ enum { HANDLERS = 32, DEPTH = 32, NONE = -1 };
 
 static struct { char name[64]; uint32_t start, end; } handlers[HANDLERS];
 static int handler_count;
-static struct { int handler; uint64_t count; } running[DEPTH];
+/* Handlers that have begun; `returned` since a return instruction, unless it goes on at `behind`. */
+static struct { int handler; uint64_t count; bool returned; uint32_t behind; } running[DEPTH];
 static int depth;
 static uint64_t anomalies;
-static bool returning;
-static uint32_t behind;
 static FILE *out;
 
 /* An instruction as it was translated, and how often the present call of the handler looked into has executed it. */
@@ -87,44 +87,56 @@ static bool is_return(uint16_t first, uint16_t second)
         || (first == 0xF85D && (second & 0xFF00) == 0xFB00);                  /* ldr pc, [sp], #n */
 }
 
-static void leave(void)
+/* The handler at a place of the stack is over. */
+static void leave(int n)
 {
-    returning = false;
+    fprintf(out, "%s %llu\n", handlers[running[n].handler].name, (unsigned long long)running[n].count);
+    if (running[n].handler == looked_into)
+        look(running[n].count);
     depth--;
-    fprintf(out, "%s %llu\n", handlers[running[depth].handler].name, (unsigned long long)running[depth].count);
-    if (running[depth].handler == looked_into)
-        look(running[depth].count);
+    memmove(&running[n], &running[n + 1], (size_t)(depth - n) * sizeof *running);
+}
+
+static void begin(int handler)
+{
+    /* one that begins anew was over when others, of whatever priority, began behind it */
+    for (int n = 0; n < depth; n++) {
+        if (running[n].handler == handler) {
+            if (!running[n].returned)
+                anomalies++;
+            leave(n);
+            break;
+        }
+    }
+    if (depth == DEPTH) {
+        anomalies++;
+        return;
+    }
+    running[depth].handler = handler;
+    running[depth].count = 0;
+    running[depth].returned = false;
+    depth++;
 }
 
 static void executed(unsigned cpu, void *data)
 {
     struct place *p = data;
     (void)cpu;
-    if (returning) {
-        if (p->at == behind)
-            returning = false;
-        else
-            leave();
-    }
-    if (p->entry) {
-        if (depth < DEPTH) {
-            running[depth].handler = p->body;
-            running[depth].count = 0;
-            depth++;
-        } else {
-            anomalies++;
-        }
-    }
+    if (p->entry)
+        begin(p->body);
+    while (depth && running[depth - 1].returned && p->at != running[depth - 1].behind)
+        leave(depth - 1);
     if (depth == 0)
         return;
+    running[depth - 1].returned = false;
     running[depth - 1].count++;
     if (running[depth - 1].handler == looked_into && !p->times++)
         add(&present, p, 0);
     if (p->body != NONE && p->body != running[depth - 1].handler)
         anomalies++;
     if (p->returns && p->body == running[depth - 1].handler) {
-        returning = true;
-        behind = p->at + p->size;
+        running[depth - 1].returned = true;
+        running[depth - 1].behind = p->at + p->size;
     }
 }
 
@@ -159,8 +171,8 @@ static void ended(plugin_id id, void *data)
 {
     (void)id;
     (void)data;
-    if (returning)
-        leave();
+    while (depth && running[depth - 1].returned)
+        leave(depth - 1);
     for (size_t n = 0; n < costliest.count; n++)
         fprintf(out, "at %u %u\n", (unsigned)costliest.places[n]->at, (unsigned)costliest.times[n]);
     fprintf(out, "anomalies %llu\n", (unsigned long long)anomalies);
