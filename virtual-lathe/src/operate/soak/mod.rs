@@ -4,6 +4,7 @@
 //! that of a scenario without a model of motors; the `oracle` looks at every tick. What fails is made short
 //! (`shrink`(mod@shrink)) and written as a scenario.
 
+mod at_shoulder;
 mod chance;
 mod clicks;
 mod coverage;
@@ -13,8 +14,11 @@ mod oracle;
 mod programs;
 mod runner;
 mod session;
+mod shoulders;
 mod shrink;
+mod soft_limit;
 mod spindle;
+mod swing;
 mod track;
 
 use std::path::{Path, PathBuf};
@@ -39,6 +43,9 @@ const HOUR: u64 = 3_600 * TICKS_PER_SECOND as u64;
 
 /// Every so many sessions one is run again from its notes: the train has to be the same.
 const AGAIN: u64 = 16;
+
+/// In every so many sessions the operator likes to work at shoulders.
+const AT_SHOULDERS: u64 = 3;
 
 /// Runs that shortening a failure may take, and ticks.
 const BUDGET_RUNS: u32 = 2_000;
@@ -162,13 +169,14 @@ fn one(seed: u64) -> (Session, Outcome) {
     }
     session.programs.push((operator::LAST.into(), operator::LAST_TEXT.into()));
     let ticks = chance.whole(20_000, 200_000).unsigned_abs();
-    let operator = Operator::new(Chance::new(seed, 2), ticks, &session.programs);
+    let shoulders = seed.is_multiple_of(AT_SHOULDERS);
+    let operator = Operator::new(Chance::new(seed, 2), ticks, &session.programs, shoulders);
     let outcome = match Runner::new(&session, operator) {
         Ok(runner) => runner.run(),
         // figures that contradict each other: another machine
         Err(_) => {
             session.set.clear();
-            let operator = Operator::new(Chance::new(seed, 2), ticks, &session.programs);
+            let operator = Operator::new(Chance::new(seed, 2), ticks, &session.programs, shoulders);
             match Runner::new(&session, operator) {
                 Ok(runner) => runner.run(),
                 Err(text) => return (session, unfit(text)),

@@ -16,9 +16,11 @@ use super::session::seconds;
 
 /// What an operator does for a session.
 pub(super) struct Operator {
-    chance: Chance,
+    pub(super) chance: Chance,
     /// What comes next, with its tick.
     plan: VecDeque<(u64, String)>,
+    /// Ticks that the next thing planned is later.
+    pub(super) waits: u64,
     thinks_at: u64,
     /// Tick at which everything is put in order, and whether that has begun.
     until: u64,
@@ -30,6 +32,8 @@ pub(super) struct Operator {
     folly: u64,
     /// A program was loaded.
     loaded: bool,
+    /// He likes to work at shoulders.
+    shoulders: bool,
 }
 
 /// Name of the program that a session ends with; it is short.
@@ -40,14 +44,15 @@ pub(super) const LAST_TEXT: &str =
     "G18 G21 G90 G94\nG0 X0.5 Z-0.5\nG1 X0.2 Z0.3 F300\nG3 X0.4 Z0.5 I0.2 K0\nG1 X0.1234 Z-0.4321\nM30\n";
 
 impl Operator {
-    /// For a session of so many ticks with these programs.
-    pub(super) fn new(mut chance: Chance, ticks: u64, programs: &[(String, String)]) -> Self {
+    /// For a session of so many ticks with these programs; he likes to work at shoulders, or does all that there is.
+    pub(super) fn new(mut chance: Chance, ticks: u64, programs: &[(String, String)], shoulders: bool) -> Self {
         let pause = chance.spread(120.0, 6_000.0);
         let folly = chance.one_of(&[2, 3, 5, 8, 20]);
         let programs = programs.iter().map(|(name, _)| name.clone()).filter(|name| name != LAST).collect();
         Self {
             chance,
             plan: VecDeque::new(),
+            waits: 0,
             thinks_at: 0,
             until: ticks,
             ordering: false,
@@ -55,12 +60,13 @@ impl Operator {
             pause,
             folly,
             loaded: false,
+            shoulders,
         }
     }
 
     /// Plans something so many ticks after the last thing planned.
-    fn then(&mut self, tick: u64, after: u64, text: impl Into<String>) {
-        let at = self.plan.back().map_or(tick, |(at, _)| *at).max(tick) + after;
+    pub(super) fn then(&mut self, tick: u64, after: u64, text: impl Into<String>) {
+        let at = self.plan.back().map_or(tick, |(at, _)| *at).max(tick) + after + std::mem::take(&mut self.waits);
         self.plan.push_back((at, text.into()));
     }
 
@@ -107,6 +113,9 @@ impl Operator {
                 1 => self.zero(now),
                 _ => self.then(now, 0, "confirm-position"),
             };
+        }
+        if self.shoulders && matches!(shown.state, State::Idle | State::Ended) && self.chance.coin() {
+            return self.work_at_shoulder(seen);
         }
         match shown.mode {
             Mode::Handwheel => self.in_handwheel(now),
@@ -361,7 +370,7 @@ impl Operator {
         }
     }
 
-    fn turn(&mut self, now: u64, wheel: Option<&'static str>) {
+    pub(super) fn turn(&mut self, now: u64, wheel: Option<&'static str>) {
         let wheel = wheel.unwrap_or_else(|| self.chance.one_of(&["x", "z", "x", "z", "contour"]));
         let sign = if self.chance.coin() { 1 } else { -1 };
         let turn = |operator: &mut Self, detents: f64, over: f64, after: u64| {
@@ -427,7 +436,7 @@ impl Operator {
         self.then(now, later, "rapid off");
     }
 
-    fn feed_rate(&mut self) -> String {
+    pub(super) fn feed_rate(&mut self) -> String {
         if self.chance.once_in(4) {
             format!("feed-rate {:.3} mm/rev", self.chance.spread(0.02, 2.0))
         } else {
@@ -435,7 +444,7 @@ impl Operator {
         }
     }
 
-    fn contour(&mut self, now: u64) {
+    pub(super) fn contour(&mut self, now: u64) {
         let mut far = || {
             let sign = self.chance.one_of(&[1.0, -1.0]);
             self.chance.spread(0.05, 20.0) * sign

@@ -11,6 +11,7 @@
 //! * **rest**: nothing moves where nothing may: after braking under an alarm, at once with motors off and after an emergency
 //!   stop, held, stopped, ended or idle with nobody turning.
 //! * **curve**, **end**: [`Track`].
+//! * **shoulder**: [`Shoulders`].
 //! * **wheel**: [`Clicks`].
 //! * **cause**: an alarm has what it tells of.
 
@@ -27,6 +28,8 @@ use measure::{MotorWatch, Setup};
 
 use super::clicks::{Clicks, Turned};
 use super::coverage::Coverage;
+use super::shoulders::{Fed, Shoulders};
+use super::soft_limit::{Place, SoftLimit};
 use super::track::{Track, part};
 
 /// Pulses that the pins may be off the place shown while an axis moves: one is owed where it would turn the axis round; and
@@ -35,7 +38,7 @@ use super::track::{Track, part};
 const IN_FLIGHT: i32 = 13;
 
 /// Ticks without a pulse after which it stands: what is owed waits 16.
-const STANDS: u32 = 20;
+pub(super) const STANDS: u32 = 20;
 
 /// A rule that was broken.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,27 +72,33 @@ struct AxisBooks {
     /// The place shown less that of the pins; and the same in the machine's coordinates.
     shift: i32,
     own: i32,
-    /// How far it may be to either side, in the machine's coordinates, now and in the tick to come; and how far the offset.
-    allowed: Option<[(i32, i32); 2]>,
+    soft_limit: SoftLimit,
+    /// How far its offset may be to either side.
     bound: Option<(i32, i32)>,
     clicks: Clicks,
     /// The place shown, and ticks since it or the pins moved.
     at: i32,
     still: u32,
     verified: bool,
-    /// What the compensation has given, and since when.
-    given: (i32, u64),
+    /// At its soft limit or beyond, as shown.
+    at_limit: bool,
 }
 
 impl AxisBooks {
-    const fn new(axis: Axis, machine: &Machine) -> Self {
+    /// Limits and bounds are others, or are not known.
+    const fn forget_limits(&mut self) {
+        self.soft_limit.forget();
+        self.bound = None;
+    }
+
+    fn new(axis: Axis, machine: &Machine) -> Self {
         let pulse = match axis {
             Axis::X => machine.x.pulse,
             Axis::Z => machine.z.pulse,
         };
         let clicks = Clicks::new();
-        let (at, still, given) = (0, STANDS, (0, 0));
-        Self { axis, pulse, shift: 0, own: 0, allowed: None, bound: None, clicks, at, still, verified: true, given }
+        let (soft_limit, bound, still) = (SoftLimit::default(), None, STANDS);
+        Self { axis, pulse, shift: 0, own: 0, soft_limit, bound, clicks, at: 0, still, verified: true, at_limit: false }
     }
 }
 
@@ -110,6 +119,7 @@ pub(super) struct Oracle {
     /// No pulses are made.
     locked: bool,
     pub(super) track: Option<Track>,
+    pub(super) shoulders: Shoulders,
     programmed: Lattice,
     /// Line and states of the tick before, and whether the path stood then.
     path: (u32, State, State, bool),
@@ -145,6 +155,7 @@ impl Oracle {
             stirred: 0,
             locked: false,
             track: None,
+            shoulders: Shoulders::new(Lattice { x: at.x, z: at.z }),
             programmed: Lattice { x: at.x, z: at.z },
             path: (0, State::Idle, State::Idle, true),
             to_go: 0,
@@ -181,7 +192,7 @@ impl Oracle {
     fn cut_books(&mut self) {
         for books in &mut self.axes {
             books.clicks.forget();
-            (books.allowed, books.bound) = (None, None);
+            books.forget_limits();
         }
         self.track = None;
     }
@@ -198,6 +209,7 @@ impl Oracle {
         (self.state, self.alarm, self.guard) = ((State::Idle, tick), (None, tick), (false, tick));
         (self.locked, self.mode, self.stirred) = (false, shown.mode, tick);
         self.programmed = shown.programmed;
+        self.shoulders = Shoulders::new(shown.programmed);
         self.click = Some(10_000);
         let at = self.position();
         for books in &mut self.axes {
@@ -215,7 +227,7 @@ impl Oracle {
         self.operation = operation;
         self.calm = calm(machine);
         for books in &mut self.axes {
-            (books.allowed, books.bound) = (None, None);
+            books.forget_limits();
             books.clicks.forget();
         }
         self.watch.configure(setup).map_err(|error| error.to_string())
@@ -223,10 +235,11 @@ impl Oracle {
 
     /// An axis was set to a place.
     pub(super) fn placed(&mut self, axis: Axis, shown: &Shown, compensation: PerAxis<i32>) {
+        self.shoulders.placed(axis, part(shown.programmed, axis));
         let at = self.position();
         // what is set while no pulses are made ends with the lock
         for books in self.axes.iter_mut().filter(|books| books.axis == axis && !self.locked) {
-            books.allowed = None;
+            books.soft_limit.forget();
             books.shift = part(shown.position, axis) - (part(at, axis) - *compensation.of(axis));
             books.verified = *shown.verified.of(axis);
             books.clicks.forget();
@@ -236,7 +249,7 @@ impl Oracle {
     /// The place of both axes was told to be right, or motors went on or off.
     pub(super) fn confirmed(&mut self, shown: &Shown) {
         for books in &mut self.axes {
-            books.allowed = None;
+            books.soft_limit.forget();
             // no home was found, whatever the mode
             books.verified = *shown.verified.of(books.axis);
         }
@@ -270,9 +283,10 @@ impl Oracle {
         self.axes.iter_mut().for_each(|books| books.clicks.forget());
     }
 
-    pub(super) fn lock(&mut self, locked: bool) {
+    pub(super) fn lock(&mut self, locked: bool, shown: &Shown) {
         self.locked = locked;
-        self.axes.iter_mut().for_each(|books| (books.allowed, books.bound) = (None, None));
+        self.shoulders.lock(locked, shown.programmed);
+        self.axes.iter_mut().for_each(AxisBooks::forget_limits);
     }
 
     /// The offset was called something else.
@@ -307,7 +321,30 @@ impl Oracle {
         for index in 0..2 {
             self.count(index, tick, (before, at), coverage)?;
         }
+        self.feed(tick, coverage)?;
         self.follow(tick, coverage)
+    }
+
+    /// What power and linked feed lead.
+    fn feed(&mut self, tick: &Tick<'_>, coverage: &mut Coverage) -> Result<(), (&'static str, String)> {
+        let (shown, report) = (tick.shown, tick.report);
+        let [x, z] = &self.axes;
+        let fed = Fed {
+            mode: shown.mode,
+            state: shown.state,
+            joystick: tick.inputs.joystick,
+            place: shown.programmed,
+            speed: shown.speed,
+            line: report.line,
+            threads: shown.lever || report.driven.stage != ThreadStage::None,
+            at_limit: PerAxis { x: x.at_limit, z: z.at_limit },
+        };
+        match self.shoulders.tick(&fed) {
+            Ok(true) => coverage.happened("shoulder met"),
+            Ok(false) => {}
+            Err(text) => return Err(("shoulder", text)),
+        }
+        Ok(())
     }
 
     /// The pins.
@@ -436,7 +473,11 @@ impl Oracle {
         books.at = part(shown.position, axis);
         let plain = pins - *tick.compensation.of(axis);
         let verified = *shown.verified.of(axis);
-        if verified && !books.verified && shown.mode == Mode::Homing && !self.locked {
+        let home = verified && !books.verified && shown.mode == Mode::Homing;
+        if home {
+            self.shoulders.placed(axis, part(shown.programmed, axis));
+        }
+        if home && !self.locked {
             // home was found: the place is another one, and nothing is beside it
             books.shift = part(shown.position, axis) - plain;
             books.own = books.shift;
@@ -446,6 +487,9 @@ impl Oracle {
             }
         }
         books.verified = verified;
+        let (least, most) = self.operation.axes.of(axis).limits;
+        let own = part(shown.position, axis) - books.shift + books.own;
+        books.at_limit = self.locked || verified && (own <= least || own >= most);
         if self.locked {
             books.clicks.forget();
             return Ok(());
@@ -457,29 +501,21 @@ impl Oracle {
             return Err(("count", format!("{what}, {axis:?} shows {off} pulses more than the pins have counted")));
         }
         let own = plain + books.own;
-        // of what a compensation has just given, a pulse that would turn the axis round may still be owed
-        if books.given.0 != *tick.compensation.of(axis) {
-            books.given = (*tick.compensation.of(axis), tick.tick);
-        }
-        let owed = i32::from(!stands && tick.tick - books.given.1 <= u64::from(STANDS));
         let figures = self.operation.axes.of(axis);
+        let given = *tick.compensation.of(axis);
         if verified {
             let (least, most) = figures.limits;
-            let [now, next] = books.allowed.get_or_insert([(least.min(own), most.max(own)); 2]);
-            if own < now.0 - owed || own > now.1 + owed {
+            let goes_on = shown.speed == 0 || shown.state == State::Running;
+            let place = Place { tick: tick.tick, own, given, limits: figures.limits, stands, goes_on };
+            if !books.soft_limit.tick(&place) {
                 return Err(("soft-limit", format!("{axis:?} is at {own} of {least} to {most} pulses")));
             }
-            // beyond its limit a path goes on for a tick if it can brake from there without leading farther out than it is now:
-            // where it turns round out there, it is held, and brakes within where it was when it went on last
-            if shown.speed == 0 || shown.state == State::Running {
-                *now = *next;
-            }
-            *next = (least.min(own).max(now.0), most.max(own).min(now.1));
             if (own == least || own == most) && books.still == 0 {
                 coverage.happened("soft limit reached");
             }
         } else {
-            books.allowed = None;
+            books.soft_limit.forget();
+            books.soft_limit.compensate(given, tick.tick);
         }
         let (offset, (least, most)) = (part(shown.offset, axis), figures.bounds);
         let bound = books.bound.get_or_insert((least.min(offset), most.max(offset)));
@@ -536,14 +572,11 @@ impl Oracle {
             return Ok(());
         }
         let wheel = matches!(shown.mode, Mode::Linked | Mode::Retrace);
-        if matches!(report.driven.stage, ThreadStage::Returning | ThreadStage::Entering) {
-            track.jumps();
-        }
-        // the spindle that drives a thread comes to rest with a last swing back, or what is foretold of it does
-        let driven = wheel || report.driven.stage != ThreadStage::None;
-        if moved && !track.follow(shown.programmed, driven) {
+        let reading = tick.inputs.spindle.map(|reading| reading.counts);
+        track.turn(reading, report.driven.stage, f64::from(report.speed) / 4096.0);
+        if let Err(text) = track.follow(shown.programmed, wheel) {
             let Lattice { x, z } = shown.programmed;
-            return Err(("curve", format!("line {}: X {x} Z {z} is no point of the program's curve", report.line)));
+            return Err(("curve", format!("line {}: X {x} Z {z} is {text}", report.line)));
         }
         if moved && wheel {
             coverage.happened("path run by a wheel");

@@ -8,6 +8,7 @@ use std::path::Path;
 use feature_editor::codes::Format;
 use handcnc::background::compile::Compiler;
 use handcnc::foreground::alarm::Faults;
+use handcnc::foreground::command::Stop;
 use handcnc::foreground::inputs::{AXES, Ends, Inputs, Joystick, PerAxis};
 use handcnc::foreground::kept::Kept;
 use handcnc::foreground::mode::Mode;
@@ -27,7 +28,7 @@ use super::oracle::{Failure, Oracle, Tick};
 use super::programs;
 use super::session::{Line, Session};
 use super::spindle::Spindle;
-use super::track::{Track, compile, part};
+use super::track::{Track, compile, nearest, part};
 use crate::operate::background::{Background, Failure as Unloaded};
 use crate::operate::event::{Source, Switch, What, Wheel};
 use crate::operate::noise::Noise;
@@ -52,6 +53,8 @@ pub(super) struct Seen<'s> {
     pub(super) pressed: bool,
     pub(super) guard: bool,
     pub(super) joystick: Joystick,
+    /// Where the program is, mm.
+    pub(super) place: PerAxis<f64>,
     /// Any limit switch is held.
     pub(super) met: bool,
     pub(super) calm: u64,
@@ -262,6 +265,7 @@ impl<'s, H: Hand> Runner<'s, H> {
             pressed: self.pressed,
             guard: self.inputs.guard,
             joystick: self.inputs.joystick,
+            place: PerAxis { x: self.mm(self.shown.programmed, Axis::X), z: self.mm(self.shown.programmed, Axis::Z) },
             met: self.switches.x.iter().chain(&self.switches.z).any(|switch| *switch == Switch::Held(true)),
             calm: self.oracle.calm(),
         };
@@ -344,8 +348,7 @@ impl<'s, H: Hand> Runner<'s, H> {
     fn look_at_switches(&mut self) {
         let at = self.oracle.position();
         for axis in AXES {
-            let pulse = if axis == Axis::X { self.background.machine.x.pulse } else { self.background.machine.z.pulse };
-            let mm = f64::from(part(at, axis)) * f64::from(pulse.numerator()) / f64::from(pulse.denominator()) * 1e-6;
+            let mm = self.mm(at, axis);
             let met = |switch: Switch, plus: bool| match switch {
                 Switch::Held(on) => on,
                 Switch::At(place) => (mm >= place && plus) || (mm <= place && !plus),
@@ -353,6 +356,12 @@ impl<'s, H: Hand> Runner<'s, H> {
             let [plus, minus] = *self.switches.of(axis);
             *self.inputs.ends.of_mut(axis) = Ends { plus: met(plus, true), minus: met(minus, false) };
         }
+    }
+
+    /// The place of an axis in mm.
+    fn mm(&self, at: Lattice, axis: Axis) -> f64 {
+        let pulse = if axis == Axis::X { self.background.machine.x.pulse } else { self.background.machine.z.pulse };
+        f64::from(part(at, axis)) * f64::from(pulse.numerator()) / f64::from(pulse.denominator()) * 1e-6
     }
 
     /// A tick.
@@ -537,6 +546,7 @@ impl<'s, H: Hand> Runner<'s, H> {
             Command::Reset => {
                 self.background.stop();
                 self.spindle.off();
+                self.oracle.shoulders.program(false);
                 self.oracle.reset(self.tick);
             }
             Command::Zero(axis, at) => {
@@ -554,7 +564,7 @@ impl<'s, H: Hand> Runner<'s, H> {
             }
             Command::ConfirmPosition | Command::Motors(_) => self.oracle.confirmed(&shown),
             Command::MachineLock(on) => {
-                self.oracle.lock(on);
+                self.oracle.lock(on, &shown);
                 self.oracle.obeyed(self.tick, 0);
             }
             Command::NullOffset => {
@@ -575,13 +585,27 @@ impl<'s, H: Hand> Runner<'s, H> {
                 self.oracle.offset_taken();
                 self.oracle.obeyed(self.tick, 0);
             }
-            Command::Mode(_) | Command::Home(_) | Command::Return | Command::Resume | Command::Contour(_) => {
+            Command::Mode(_) => {
+                self.oracle.shoulders.program(false);
                 self.oracle.obeyed(self.tick, 0);
+            }
+            Command::Home(_) | Command::Return | Command::Resume | Command::Contour(_) => {
+                self.oracle.obeyed(self.tick, 0);
+            }
+            Command::StopAt(axis, stop) => {
+                let machine = &self.background.machine;
+                let pulse = if axis == Axis::X { machine.x.pulse } else { machine.z.pulse };
+                let place = match stop {
+                    Stop::At(at) => Some(nearest(i64::from(at.nm()), pulse)),
+                    Stop::Here => Some(part(shown.programmed, axis)),
+                    Stop::Off => None,
+                };
+                self.oracle.shoulders.set(axis, place);
             }
             Command::Lever(_) | Command::PickUp(_) => self.oracle.obeyed(self.tick, 0),
             Command::Configure(_) | Command::Settle(_) => {}
             Command::Start => self.oracle.stirs(self.tick),
-            Command::Hold | Command::Unlock | Command::Repeat(_) | Command::StopAt(..) => {}
+            Command::Hold | Command::Unlock | Command::Repeat(_) => {}
             Command::FeedOverride(_) | Command::RapidOverride(_) | Command::OptionalStop(_) => {}
             Command::SingleBlock(_) | Command::DryRun(_) | Command::FeedRate(_) => {}
         }
@@ -623,6 +647,7 @@ impl<'s, H: Hand> Runner<'s, H> {
         if self.request(Command::Start, foreground) {
             self.began = at;
             self.background.run(source);
+            self.oracle.shoulders.program(true);
             let text = self.loaded.as_deref().and_then(|name| self.session.program(name)).unwrap_or_default();
             if text.contains("G33") || text.contains("G95") {
                 self.oracle.spindle_is_asked();
@@ -632,7 +657,13 @@ impl<'s, H: Hand> Runner<'s, H> {
             let mut compiler = Compiler::new(settings, Format::Gcode, &self.background.machine);
             let mut blocks = compile(text, &mut compiler);
             let from = foreground.programmed();
-            let track = Track::new(blocks.make_contiguous(), from, programs::end(text), &self.background.machine);
+            let track = Track::new(
+                blocks.make_contiguous(),
+                from,
+                programs::end(text),
+                &self.background.machine,
+                self.spindle.turn(),
+            );
             self.oracle.track = Some(track);
         }
     }
