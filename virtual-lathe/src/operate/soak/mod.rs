@@ -4,10 +4,10 @@
 //! that of a scenario without a model of motors; the `oracle` looks at every tick. What fails is made short
 //! (`shrink`(mod@shrink)) and written as a scenario.
 
-mod at_shoulder;
 mod chance;
 mod clicks;
 mod coverage;
+mod hand;
 mod machines;
 mod operator;
 mod oracle;
@@ -30,9 +30,10 @@ use interp_core::config::TICKS_PER_SECOND;
 
 use chance::Chance;
 use coverage::Coverage;
+use hand::Script;
 use operator::Operator;
 use oracle::Failure;
-use runner::{Outcome, Runner, Script};
+use runner::{Outcome, Runner};
 use session::{Line, Session, Unread};
 use shrink::Found;
 

@@ -6,8 +6,8 @@ use handcnc::foreground::inputs::Joystick;
 use handcnc::foreground::mode::Mode;
 use interp_core::units::Axis;
 
-use super::operator::Operator;
-use super::runner::Seen;
+use super::Operator;
+use crate::operate::soak::hand::Seen;
 
 impl Operator {
     /// A piece of work at shoulders, in power or linked feed.
