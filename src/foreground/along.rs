@@ -42,6 +42,13 @@ pub(super) struct Way {
     began: Option<i64>,
 }
 
+impl Way {
+    /// Where the way back ends: where the last push began, or at a shoulder that was set between.
+    fn way_back(&self) -> Option<i64> {
+        self.began.map(|began| began.max(self.least).min(self.most))
+    }
+}
+
 impl Desk {
     /// The contour, where it is in the channel.
     const fn on_way(&mut self) -> Option<&mut Way> {
@@ -215,8 +222,8 @@ impl Foreground<'_> {
 
     /// Begins the way back to where the last push began. False where it is there.
     pub(super) fn lead_back(&mut self) -> bool {
-        let Some(began) = self.desk.way_began() else { return false };
-        if self.is_along(began) {
+        let Some(to) = self.desk.on_way().and_then(|way| way.way_back()) else { return false };
+        if self.is_along(to) {
             return false;
         }
         if matches!(self.channel.state(), State::Holding) {
@@ -229,7 +236,8 @@ impl Foreground<'_> {
     /// A tick of the way back.
     #[cold]
     pub(super) fn return_along(&mut self) {
-        let Some(&mut Way { rapid, began: Some(began), .. }) = self.desk.on_way() else {
+        let way = self.desk.on_way().map(|way| (way.rapid, way.way_back()));
+        let Some((rapid, Some(to))) = way else {
             self.desk.power.phase = Phase::Rest;
             return;
         };
@@ -237,10 +245,10 @@ impl Foreground<'_> {
         // with the joystick let go, or a push of it that asked for no return, it brakes
         let let_go = self.desk.power.repeats > 0 && matches!(inputs.joystick, Joystick::Off);
         let broken = let_go || inputs.guard || matches!(self.channel.state(), State::Holding);
-        if !broken && (self.channel.speed() > 0 || !self.is_along(began)) {
-            self.channel.set_ends(at.min(began), at.max(began));
+        if !broken && (self.channel.speed() > 0 || !self.is_along(to)) {
+            self.channel.set_ends(at.min(to), at.max(to));
             let speed = percent(rapid, self.channel.rapid_override());
-            self.channel.pull(Some(Pull { back: began < at, speed }));
+            self.channel.pull(Some(Pull { back: to < at, speed }));
             return;
         }
         self.set_ends();

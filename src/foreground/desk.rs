@@ -74,12 +74,14 @@ pub(super) struct Seen {
     pub(super) place: Lattice,
     /// And at the end of the one before.
     pub(super) before: Lattice,
+    /// Where the program was at the end of the last tick in which anything moved.
+    pub(super) led: Lattice,
 }
 
 impl Seen {
     pub(super) const NOWHERE: Self = {
         let at = Lattice { x: 0, z: 0 };
-        Self { place: at, before: at }
+        Self { place: at, before: at, led: at }
     };
 }
 
@@ -106,6 +108,9 @@ pub(super) struct Locked {
     pub(super) wear: Lattice,
     pub(super) datum: Lattice,
     pub(super) verified: PerAxis<bool>,
+    /// From which side the axes came, and by how much their coordinates were set anew meanwhile.
+    pub(super) came: PerAxis<Option<bool>>,
+    pub(super) recounted: Lattice,
 }
 
 impl Desk {

@@ -79,6 +79,7 @@ impl Foreground<'_> {
         let mut position = self.channel.position();
         let beyond = part(position, axis).wrapping_sub(at);
         let place = self.desk.settings.axes.of(axis).home.wrapping_add(beyond);
+        let by = place.wrapping_sub(part(position, axis));
         *part_mut(&mut position, axis) = place;
         // what was kept beside the program ends here: the axis is where the machine says
         let mut offset = self.channel.offset();
@@ -88,6 +89,8 @@ impl Foreground<'_> {
         if self.channel.set_position(position) {
             self.channel.set_offset(offset);
             self.channel.stand_at(axis, place);
+            self.recount(axis, by);
+            self.seen.led = self.led();
             *self.desk.verified.of_mut(axis) = true;
             self.desk.closed_loop.forget(axis);
             self.set_limits();

@@ -236,16 +236,29 @@ impl Foreground<'_> {
             self.desk.refuse(Refusal::Limit(axis, plus));
         }
         let before = self.seen.place;
-        if place != before {
-            let came = &mut self.desk.power.came;
-            if place.x != before.x {
-                came.x = Some(place.x > before.x);
-            }
-            if place.z != before.z {
-                came.z = Some(place.z > before.z);
-            }
+        if place != before || self.attended {
+            self.note_way();
         }
         (self.seen.before, self.seen.place) = (before, place);
+    }
+
+    /// Notes from which side the program's place comes: that is what shoulders stop, and not what hands lead beside it.
+    fn note_way(&mut self) {
+        let (led, before) = (self.led(), self.seen.led);
+        let came = &mut self.desk.power.came;
+        if led.x != before.x {
+            came.x = Some(led.x > before.x);
+        }
+        if led.z != before.z {
+            came.z = Some(led.z > before.z);
+        }
+        self.seen.led = led;
+    }
+
+    /// Where the program is, however its coordinates count.
+    pub(super) const fn led(&self) -> Lattice {
+        let (at, datum) = (self.channel.position(), self.desk.datum);
+        Lattice { x: at.x.wrapping_add(datum.x), z: at.z.wrapping_add(datum.z) }
     }
 
     /// What wheels and the machine's own paths have come to, and switches.

@@ -6,7 +6,7 @@
 
 use super::Foreground;
 use super::desk::{part, part_mut};
-use super::inputs::{Joystick, PerAxis};
+use super::inputs::{AXES, Joystick, PerAxis};
 use super::mode::Mode;
 use super::refusal::Refusal;
 use interp_core::block::Feed;
@@ -97,6 +97,18 @@ impl Power {
         let leaves = self.came.of(axis).is_some_and(|came| came != plus);
         let ahead = |stop: i32| if plus { stop > from } else { stop < from };
         self.stops.of(axis).filter(|&stop| ahead(stop) || stop == from && !leaves)
+    }
+
+    /// Where a way back to `began` ends: there, or at a shoulder that was set between.
+    fn way_back(&self, from: Lattice, began: Lattice) -> Lattice {
+        let mut to = began;
+        for axis in AXES {
+            let (from, began) = (part(from, axis), part(began, axis));
+            if began != from {
+                *part_mut(&mut to, axis) = self.end(axis, began > from, from, began);
+            }
+        }
+        to
     }
 
     /// Whether the tool is on the contour.
@@ -231,10 +243,32 @@ impl Foreground<'_> {
         let (repeats, began) = (power.repeats, power.began);
         power.done = Joystick::Axis(axis, plus);
         power.phase = Phase::Rest;
-        if let (1.., Some(began)) = (repeats, began)
-            && self.begin_line(began, Feed::Rapid)
-        {
+        if let (1.., Some(began)) = (repeats, began) {
+            self.begin_return(began);
+        }
+    }
+
+    /// Begins the way back to where a feed along an axis began.
+    pub(super) fn begin_return(&mut self, began: Lattice) {
+        let to = self.desk.power.way_back(self.channel.position(), began);
+        if self.begin_line(to, Feed::Rapid) {
             self.desk.power.phase = Phase::Return;
+        }
+    }
+
+    /// The coordinates of an axis count from elsewhere: shoulder and groove stay where they are on the machine, and the
+    /// way back ends.
+    pub(super) fn recount(&mut self, axis: Axis, by: i32) {
+        if matches!(axis, Axis::Z) {
+            self.shift_groove(by);
+        }
+        let power = &mut self.desk.power;
+        let stop = power.stops.of_mut(axis);
+        *stop = stop.map(|stop| stop.wrapping_add(by));
+        (power.began, power.threaded) = (None, false);
+        if let Some(locked) = &mut self.desk.locked {
+            let recounted = part_mut(&mut locked.recounted, axis);
+            *recounted = recounted.wrapping_add(by);
         }
     }
 }

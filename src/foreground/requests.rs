@@ -9,7 +9,6 @@ use super::power::Phase;
 use super::refusal::Refusal;
 use super::threads::Lever;
 use super::{Alarm, Foreground};
-use interp_core::block::Feed;
 use interp_core::channel::State;
 use interp_core::drive::Drive;
 use interp_core::units::{Axis, Lattice, Length};
@@ -214,11 +213,16 @@ impl Foreground<'_> {
             self.channel.set_position(locked.position);
             self.channel.set_offset(locked.offset);
             self.channel.mute(false);
+            for axis in AXES {
+                self.recount(axis, part(locked.recounted, axis).wrapping_neg());
+            }
             let desk = &mut self.desk;
+            desk.power.came = locked.came;
             (desk.kept, desk.wear, desk.datum) = (locked.kept, locked.wear, locked.datum);
             // what was lost meanwhile is lost; what was found was not the axes' place
             desk.verified.x &= locked.verified.x;
             desk.verified.z &= locked.verified.z;
+            self.seen.led = self.led();
         }
     }
 
@@ -228,7 +232,8 @@ impl Foreground<'_> {
             let (position, offset) = (self.channel.position(), self.channel.offset());
             let desk = &mut self.desk;
             let (kept, wear, datum, verified) = (desk.kept, desk.wear, desk.datum, desk.verified);
-            desk.locked = Some(Locked { position, offset, kept, wear, datum, verified });
+            let (came, recounted) = (desk.power.came, Lattice::default());
+            desk.locked = Some(Locked { position, offset, kept, wear, datum, verified, came, recounted });
         }
     }
 
@@ -251,9 +256,7 @@ impl Foreground<'_> {
         }
         let Some(began) = self.desk.power.began else { return Err(Refusal::NothingToReturnFrom) };
         self.drop_path();
-        if self.begin_line(began, Feed::Rapid) {
-            self.desk.power.phase = Phase::Return;
-        }
+        self.begin_return(began);
         Ok(())
     }
 
@@ -268,14 +271,9 @@ impl Foreground<'_> {
         let by = pulse.nearest(at).wrapping_sub(shown);
         *place = place.wrapping_add(by);
         if self.channel.set_position(position) {
-            if matches!(axis, Axis::Z) {
-                self.shift_groove(by);
-            }
+            self.recount(axis, by);
             let datum = part_mut(&mut self.desk.datum, axis);
             *datum = datum.wrapping_sub(by);
-            let stop = self.desk.power.stops.of_mut(axis);
-            *stop = stop.map(|stop| stop.wrapping_add(by));
-            (self.desk.power.began, self.desk.power.threaded) = (None, false);
             *self.desk.verified.of_mut(axis) = true;
             self.desk.closed_loop.forget(axis);
         }

@@ -214,3 +214,113 @@ fn a_push_along_the_contour_waits_for_the_hands() {
     assert_eq!(bench.shown().offset.x, offset);
     bench.keep_limits();
 }
+
+/// Fed along Z to -3 mm, and let go.
+fn fed() -> Bench {
+    let mut bench = power();
+    bench.ask(Command::FeedRate(feed(5_000))).unwrap();
+    bench.ask(Command::StopAt(Axis::Z, Stop::At(mm(-3)))).unwrap();
+    bench.inputs.joystick = Joystick::Axis(Axis::Z, false);
+    bench.settle();
+    assert_eq!(bench.at.z, -1200);
+    bench.inputs.joystick = Joystick::Off;
+    bench.ticks(5);
+    bench
+}
+
+#[test]
+fn a_way_back_ends_at_a_shoulder_that_was_set_between() {
+    let mut bench = fed();
+    bench.ask(Command::StopAt(Axis::Z, Stop::At(mm(-1)))).unwrap();
+    for _ in 0..2 {
+        bench.ask(Command::Return).unwrap();
+        bench.settle();
+        assert_eq!(bench.at.z, -400);
+    }
+    bench.ask(Command::StopAt(Axis::Z, Stop::Off)).unwrap();
+    bench.ask(Command::Return).unwrap();
+    bench.settle();
+    assert_eq!(bench.at.z, 0);
+}
+
+#[test]
+fn a_way_back_along_the_contour_ends_at_a_shoulder_that_was_set_between() {
+    let mut bench = power();
+    bench.ask(Command::FeedRate(feed(5_000))).unwrap();
+    bench.ask(Command::Contour(Contour::Taper(interp_core::units::Point { x: mm(1), z: mm(-3) }))).unwrap();
+    bench.inputs.joystick = Joystick::Path(true);
+    bench.settle();
+    bench.inputs.joystick = Joystick::Off;
+    bench.ticks(5);
+    bench.ask(Command::StopAt(Axis::Z, Stop::At(mm(-1)))).unwrap();
+    for _ in 0..2 {
+        bench.ask(Command::Return).unwrap();
+        bench.settle();
+        assert_eq!(bench.at.z, -400);
+    }
+    bench.ask(Command::StopAt(Axis::Z, Stop::Off)).unwrap();
+    bench.ask(Command::Return).unwrap();
+    bench.settle();
+    assert_eq!(bench.at, Lattice::default());
+}
+
+#[test]
+fn what_a_hand_leads_beside_the_contour_does_not_turn_a_shoulder_round() {
+    let mut bench = fed();
+    bench.ask(Command::Mode(Mode::Linked)).unwrap();
+    bench.ask(Command::Scale(Some(Click::DECADES[1]))).unwrap();
+    bench.ask(Command::Contour(Contour::Taper(interp_core::units::Point { x: mm(1), z: mm(-3) }))).unwrap();
+    // off to plus, but the program came to the shoulder from plus and stands on it
+    bench.turn(Axis::Z, 5, 1);
+    bench.settle();
+    assert!(bench.shown().offset.z > 0);
+    bench.inputs.contour = 400;
+    bench.settle();
+    assert_eq!(bench.shown().programmed, Lattice { x: 0, z: -1200 });
+}
+
+#[test]
+fn home_takes_a_shoulder_along_and_ends_the_way_back() {
+    let mut bench = fed();
+    bench.ask(Command::Zero(Axis::Z, mm(7))).unwrap();
+    bench.ask(Command::StopAt(Axis::Z, Stop::At(mm(9)))).unwrap();
+    bench.inputs.joystick = Joystick::Axis(Axis::Z, true);
+    bench.ticks(20);
+    bench.inputs.joystick = Joystick::Off;
+    bench.settle();
+    let pins = bench.at.z;
+    bench.ask(Command::Mode(Mode::Homing)).unwrap();
+    // at the switch, and off it
+    bench.inputs.ends.z.plus = true;
+    bench.tick();
+    bench.ask(Command::Home(Axis::Z)).unwrap();
+    bench.ticks(50);
+    bench.inputs.ends.z.plus = false;
+    bench.settle();
+    assert!(bench.shown().verified.z && bench.at.z < pins && bench.shown().programmed.z > -100);
+    bench.ask(Command::Mode(Mode::Power)).unwrap();
+    assert_eq!(bench.ask(Command::Return), Err(Refusal::NothingToReturnFrom));
+    bench.inputs.joystick = Joystick::Axis(Axis::Z, true);
+    bench.settle();
+    // 2 mm to plus of where it was 7 mm
+    assert_eq!(bench.at.z, -1200 + 800);
+}
+
+#[test]
+fn machine_lock_leaves_a_shoulder_where_it_was_and_ends_the_way_back() {
+    let mut bench = fed();
+    bench.ask(Command::StopAt(Axis::Z, Stop::At(mm(-1)))).unwrap();
+    bench.ask(Command::MachineLock(true)).unwrap();
+    bench.ask(Command::Zero(Axis::Z, mm(50))).unwrap();
+    bench.inputs.joystick = Joystick::Axis(Axis::Z, false);
+    bench.ticks(50);
+    bench.inputs.joystick = Joystick::Off;
+    bench.settle();
+    assert_eq!(bench.at.z, -1200);
+    bench.ask(Command::MachineLock(false)).unwrap();
+    assert_eq!(bench.shown().programmed.z, -1200);
+    assert_eq!(bench.ask(Command::Return), Err(Refusal::NothingToReturnFrom));
+    bench.inputs.joystick = Joystick::Axis(Axis::Z, true);
+    bench.settle();
+    assert_eq!(bench.at.z, -400);
+}

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Step, X, X_PLUS, at, changes, line, line_steps, setup, ticks};
+use common::{Step, X, X_PLUS, at, changes, jumpy, line, line_steps, setup, ticks};
 use measure::{Checker, FaultKind, Faults, MotorWatch, PerAxis};
 
 /// The train of these steps.
@@ -110,4 +110,77 @@ fn a_train_that_is_cut_off_at_full_speed_is_no_fault_where_it_is_told() {
     };
     assert_eq!(run(true), 0);
     assert!(run(false) > 0);
+}
+
+/// Pulses a tick squared times the square of 8 ticks.
+const BEND: f64 = 10.096_678;
+
+/// Where the pins are at the end of each tick: a program and a wheel move one axis, together with an acceleration of [`BEND`] over
+/// 8 ticks to plus, after one to minus until tick 40. Each has its rounding, the program's that of a minor axis; and a pulse that would turn
+/// the axis round is owed until its opposite cancels it, a second one comes, or 16 ticks have gone by.
+fn superposed() -> Vec<i32> {
+    const SLOPE: f64 = 0.859_421_097;
+    let a = BEND / 64.0;
+    let (mut at, mut plus, mut waited, mut places) = (None, true, 0, Vec::new());
+    for part in 0..=56 * 32 {
+        let t = f64::from(part) / 32.0 - 40.0;
+        let both = -0.579_936_461 - a * 0.319_930_206 * 8.0 * t + if t < 0.0 { -a } else { a } * t * t / 2.0;
+        let program = 16.875_597_584 + 0.360_381_474 * t;
+        let major = (program / SLOPE + 1_000.0).floor();
+        #[expect(clippy::cast_possible_truncation, reason = "some hundred pulses")]
+        let planned = ((SLOPE * major + 0.5).floor() + (both - program + 0.5).floor()) as i32;
+        let mut pins = *at.get_or_insert(planned);
+        let owed = planned - pins;
+        if owed != 0 && (owed.abs() > 1 || (owed > 0) == plus) {
+            (pins, plus) = (planned, owed > 0);
+        }
+        if part % 32 == 0 {
+            waited = if pins == planned { 0 } else { waited + 1 };
+            if waited == 16 {
+                (plus, pins, waited) = (planned > pins, planned, 0);
+            }
+            places.push(pins);
+        }
+        at = Some(pins);
+    }
+    places
+}
+
+/// What is found wrong, in windows of how many ticks, of pins that are at these places at the ticks' ends.
+fn bent(places: &[i32]) -> Vec<(FaultKind, u16, i64)> {
+    let mut steps = Vec::new();
+    for (tick, pair) in (1_u32..).zip(places.windows(2)) {
+        let by = pair[1] - pair[0];
+        for pulse in 0..by.abs() {
+            let ms = f64::from(tick) + (f64::from(pulse) + 0.5) / f64::from(by.abs());
+            steps.push(Step { clocks: at(ms / 1e3), x: by.signum(), z: 0 });
+        }
+    }
+    let mut setup = jumpy();
+    setup.limits.x.max_accel = BEND / 64.0 * 1e3;
+    let mut watch = MotorWatch::new(setup).unwrap();
+    for tick in train(&steps) {
+        watch.added();
+        watch.tick(&tick, &mut |_, _, _| {});
+    }
+    let faults = watch.finish();
+    faults.first().iter().map(|fault| (fault.kind, fault.ticks, fault.found)).collect()
+}
+
+#[test]
+fn what_two_roundings_and_an_owed_pulse_fake_is_no_fault_and_no_more_than_that() {
+    let mut places = superposed();
+    // it goes on evenly
+    let (last, before) = (places[56], places[48]);
+    places.extend((1..=40).map(|tick| last + (last - before) * tick / 8));
+    // 7 more than the acceleration makes
+    assert_eq!(places[40] - 2 * places[48] + places[56], 17);
+    let bent_by = |more: i32| {
+        let mut places = places.clone();
+        places[56..].iter_mut().for_each(|place| *place += more);
+        bent(&places)
+    };
+    // less than 9 more is granted
+    assert!(bent_by(0).is_empty() && bent_by(2).is_empty());
+    assert_eq!(bent_by(3), [(FaultKind::Acceleration, 8, 20)]);
 }

@@ -83,7 +83,7 @@ const REFUSALS: [&str; 28] = [
     "wheels-off",
     "wrong-mode",
 ];
-const HAPPENED: [&str; 8] = [
+const HAPPENED: [&str; 9] = [
     "cycle ended",
     "cycle reset",
     "offset wound back to zero",
@@ -91,6 +91,7 @@ const HAPPENED: [&str; 8] = [
     "thread cut",
     "thread left",
     "wheel counted exactly",
+    "shoulder met",
     "soft limit reached",
 ];
 

@@ -7,14 +7,18 @@
 mod chance;
 mod clicks;
 mod coverage;
+mod hand;
 mod machines;
 mod operator;
 mod oracle;
 mod programs;
 mod runner;
 mod session;
+mod shoulders;
 mod shrink;
+mod soft_limit;
 mod spindle;
+mod swing;
 mod track;
 
 use std::path::{Path, PathBuf};
@@ -26,9 +30,10 @@ use interp_core::config::TICKS_PER_SECOND;
 
 use chance::Chance;
 use coverage::Coverage;
+use hand::Script;
 use operator::Operator;
 use oracle::Failure;
-use runner::{Outcome, Runner, Script};
+use runner::{Outcome, Runner};
 use session::{Line, Session, Unread};
 use shrink::Found;
 
@@ -39,6 +44,9 @@ const HOUR: u64 = 3_600 * TICKS_PER_SECOND as u64;
 
 /// Every so many sessions one is run again from its notes: the train has to be the same.
 const AGAIN: u64 = 16;
+
+/// In every so many sessions the operator likes to work at shoulders.
+const AT_SHOULDERS: u64 = 3;
 
 /// Runs that shortening a failure may take, and ticks.
 const BUDGET_RUNS: u32 = 2_000;
@@ -162,13 +170,14 @@ fn one(seed: u64) -> (Session, Outcome) {
     }
     session.programs.push((operator::LAST.into(), operator::LAST_TEXT.into()));
     let ticks = chance.whole(20_000, 200_000).unsigned_abs();
-    let operator = Operator::new(Chance::new(seed, 2), ticks, &session.programs);
+    let shoulders = seed.is_multiple_of(AT_SHOULDERS);
+    let operator = Operator::new(Chance::new(seed, 2), ticks, &session.programs, shoulders);
     let outcome = match Runner::new(&session, operator) {
         Ok(runner) => runner.run(),
         // figures that contradict each other: another machine
         Err(_) => {
             session.set.clear();
-            let operator = Operator::new(Chance::new(seed, 2), ticks, &session.programs);
+            let operator = Operator::new(Chance::new(seed, 2), ticks, &session.programs, shoulders);
             match Runner::new(&session, operator) {
                 Ok(runner) => runner.run(),
                 Err(text) => return (session, unfit(text)),

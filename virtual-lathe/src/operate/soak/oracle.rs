@@ -11,22 +11,30 @@
 //! * **rest**: nothing moves where nothing may: after braking under an alarm, at once with motors off and after an emergency
 //!   stop, held, stopped, ended or idle with nobody turning.
 //! * **curve**, **end**: [`Track`].
-//! * **wheel**: [`Clicks`].
+//! * **shoulder**: [`Shoulders`].
+//! * **wheel**: [`Clicks`](super::clicks::Clicks).
 //! * **cause**: an alarm has what it tells of.
 
+mod axis;
+mod rest;
+mod told;
+
 use handcnc::foreground::alarm::Alarm;
-use handcnc::foreground::inputs::{AXES, Inputs, Joystick, PerAxis};
+use handcnc::foreground::inputs::{Inputs, Joystick, PerAxis};
 use handcnc::foreground::mode::Mode;
 use handcnc::foreground::settings::Settings as Operation;
 use handcnc::foreground::shown::Shown;
 use interp_core::channel::{Report, State};
 use interp_core::config::Machine;
 use interp_core::drive::ThreadStage;
-use interp_core::units::{Axis, Lattice, PulseSize};
+use interp_core::units::{Axis, Lattice};
 use measure::{MotorWatch, Setup};
 
-use super::clicks::{Clicks, Turned};
+use axis::AxisBooks;
+use rest::calm;
+
 use super::coverage::Coverage;
+use super::shoulders::{Fed, Shoulders};
 use super::track::{Track, part};
 
 /// Pulses that the pins may be off the place shown while an axis moves: one is owed where it would turn the axis round; and
@@ -35,7 +43,7 @@ use super::track::{Track, part};
 const IN_FLIGHT: i32 = 13;
 
 /// Ticks without a pulse after which it stands: what is owed waits 16.
-const STANDS: u32 = 20;
+pub(super) const STANDS: u32 = 20;
 
 /// A rule that was broken.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,37 +70,6 @@ pub(super) struct Tick<'t> {
     pub(super) rests: bool,
 }
 
-/// What is remembered of an axis.
-struct AxisBooks {
-    axis: Axis,
-    pulse: PulseSize,
-    /// The place shown less that of the pins; and the same in the machine's coordinates.
-    shift: i32,
-    own: i32,
-    /// How far it may be to either side, in the machine's coordinates, now and in the tick to come; and how far the offset.
-    allowed: Option<[(i32, i32); 2]>,
-    bound: Option<(i32, i32)>,
-    clicks: Clicks,
-    /// The place shown, and ticks since it or the pins moved.
-    at: i32,
-    still: u32,
-    verified: bool,
-    /// What the compensation has given, and since when.
-    given: (i32, u64),
-}
-
-impl AxisBooks {
-    const fn new(axis: Axis, machine: &Machine) -> Self {
-        let pulse = match axis {
-            Axis::X => machine.x.pulse,
-            Axis::Z => machine.z.pulse,
-        };
-        let clicks = Clicks::new();
-        let (at, still, given) = (0, STANDS, (0, 0));
-        Self { axis, pulse, shift: 0, own: 0, allowed: None, bound: None, clicks, at, still, verified: true, given }
-    }
-}
-
 /// All oracles of a session.
 pub(super) struct Oracle {
     watch: MotorWatch,
@@ -110,6 +87,7 @@ pub(super) struct Oracle {
     /// No pulses are made.
     locked: bool,
     pub(super) track: Option<Track>,
+    pub(super) shoulders: Shoulders,
     programmed: Lattice,
     /// Line and states of the tick before, and whether the path stood then.
     path: (u32, State, State, bool),
@@ -145,6 +123,7 @@ impl Oracle {
             stirred: 0,
             locked: false,
             track: None,
+            shoulders: Shoulders::new(Lattice { x: at.x, z: at.z }),
             programmed: Lattice { x: at.x, z: at.z },
             path: (0, State::Idle, State::Idle, true),
             to_go: 0,
@@ -170,114 +149,6 @@ impl Oracle {
 
     pub(super) const fn calm(&self) -> u64 {
         self.calm
-    }
-
-    /// The train was cut off.
-    pub(super) fn cut(&mut self) {
-        self.watch.cut();
-        self.cut_books();
-    }
-
-    fn cut_books(&mut self) {
-        for books in &mut self.axes {
-            books.clicks.forget();
-            (books.allowed, books.bound) = (None, None);
-        }
-        self.track = None;
-    }
-
-    /// An emergency stop: what was planned already comes in the next tick, then nothing is compared with what was before.
-    pub(super) fn stopped(&mut self) {
-        self.cut_books();
-        self.stopped = true;
-    }
-
-    /// Power is on again.
-    pub(super) fn switched_on(&mut self, tick: u64, shown: &Shown) {
-        self.cut();
-        (self.state, self.alarm, self.guard) = ((State::Idle, tick), (None, tick), (false, tick));
-        (self.locked, self.mode, self.stirred) = (false, shown.mode, tick);
-        self.programmed = shown.programmed;
-        self.click = Some(10_000);
-        let at = self.position();
-        for books in &mut self.axes {
-            books.clicks = Clicks::new();
-            books.verified = *shown.verified.of(books.axis);
-            // what a compensation had added counts as right from now on, and what was owed is not made any more
-            let shift = part(shown.position, books.axis) - part(at, books.axis);
-            books.own += shift - books.shift;
-            books.shift = shift;
-        }
-    }
-
-    /// Other figures, at rest.
-    pub(super) fn configure(&mut self, setup: Setup, machine: &Machine, operation: Operation) -> Result<(), String> {
-        self.operation = operation;
-        self.calm = calm(machine);
-        for books in &mut self.axes {
-            (books.allowed, books.bound) = (None, None);
-            books.clicks.forget();
-        }
-        self.watch.configure(setup).map_err(|error| error.to_string())
-    }
-
-    /// An axis was set to a place.
-    pub(super) fn placed(&mut self, axis: Axis, shown: &Shown, compensation: PerAxis<i32>) {
-        let at = self.position();
-        // what is set while no pulses are made ends with the lock
-        for books in self.axes.iter_mut().filter(|books| books.axis == axis && !self.locked) {
-            books.allowed = None;
-            books.shift = part(shown.position, axis) - (part(at, axis) - *compensation.of(axis));
-            books.verified = *shown.verified.of(axis);
-            books.clicks.forget();
-        }
-    }
-
-    /// The place of both axes was told to be right, or motors went on or off.
-    pub(super) fn confirmed(&mut self, shown: &Shown) {
-        for books in &mut self.axes {
-            books.allowed = None;
-            // no home was found, whatever the mode
-            books.verified = *shown.verified.of(books.axis);
-        }
-    }
-
-    /// A request was obeyed that may move a slide, or forgets what a wheel asked for.
-    pub(super) fn obeyed(&mut self, tick: u64, takes: u64) {
-        self.stirred = self.stirred.max(tick + takes);
-        self.axes.iter_mut().for_each(|books| books.clicks.forget());
-    }
-
-    /// All was stopped: what the wheels had asked for is told as dropped, up to a count that was begun.
-    pub(super) fn reset(&mut self, tick: u64) {
-        self.stirred = self.stirred.max(tick);
-        self.axes.iter_mut().for_each(|books| books.clicks.broken());
-        self.track = self.track.take().filter(Track::has_begun);
-    }
-
-    /// Something begins, and may be held at once.
-    pub(super) fn stirs(&mut self, tick: u64) {
-        self.stirred = self.stirred.max(tick);
-    }
-
-    /// The spindle may have a say.
-    pub(super) const fn spindle_is_asked(&mut self) {
-        self.spindle_asked = true;
-    }
-
-    pub(super) fn scale(&mut self, click: Option<i64>) {
-        self.click = click;
-        self.axes.iter_mut().for_each(|books| books.clicks.forget());
-    }
-
-    pub(super) fn lock(&mut self, locked: bool) {
-        self.locked = locked;
-        self.axes.iter_mut().for_each(|books| (books.allowed, books.bound) = (None, None));
-    }
-
-    /// The offset was called something else.
-    pub(super) fn offset_taken(&mut self) {
-        self.axes.iter_mut().for_each(|books| books.bound = None);
     }
 
     /// Looks at a tick.
@@ -307,7 +178,30 @@ impl Oracle {
         for index in 0..2 {
             self.count(index, tick, (before, at), coverage)?;
         }
+        self.feed(tick, coverage)?;
         self.follow(tick, coverage)
+    }
+
+    /// What power and linked feed lead.
+    fn feed(&mut self, tick: &Tick<'_>, coverage: &mut Coverage) -> Result<(), (&'static str, String)> {
+        let (shown, report) = (tick.shown, tick.report);
+        let [x, z] = &self.axes;
+        let fed = Fed {
+            mode: shown.mode,
+            state: shown.state,
+            joystick: tick.inputs.joystick,
+            place: shown.programmed,
+            speed: shown.speed,
+            line: report.line,
+            threads: shown.lever || report.driven.stage != ThreadStage::None,
+            at_limit: PerAxis { x: x.at_limit, z: z.at_limit },
+        };
+        match self.shoulders.tick(&fed) {
+            Ok(true) => coverage.happened("shoulder met"),
+            Ok(false) => {}
+            Err(text) => return Err(("shoulder", text)),
+        }
+        Ok(())
     }
 
     /// The pins.
@@ -369,156 +263,6 @@ impl Oracle {
         self.offset_was = offset;
     }
 
-    /// Nothing moves where nothing may.
-    fn rest(&self, tick: &Tick<'_>, (before, at): (Lattice, Lattice)) -> Result<(), (&'static str, String)> {
-        let shown = tick.shown;
-        let path = shown.programmed != self.programmed;
-        if at == before && !path {
-            return Ok(());
-        }
-        let since = |from: u64| tick.tick.saturating_sub(from);
-        let by = || format!("X by {} and Z by {} pulses", at.x - before.x, at.z - before.z);
-        if self.locked && at != before {
-            return Err(("rest", format!("machine lock is on, and the pins moved {}", by())));
-        }
-        // an emergency stop ends the planning at once; of what was planned before, the shaper may have had no room in its tick
-        let flown = (at.x - before.x).abs() <= IN_FLIGHT && (at.z - before.z).abs() <= IN_FLIGHT;
-        let cut_off = matches!(self.alarm, (Some(Alarm::Emergency), raised) if since(raised) == 0) && flown && !path;
-        if !shown.outputs.motors && at != before && !cut_off {
-            return Err(("rest", format!("the motors are off, and the pins moved {}", by())));
-        }
-        let (alarm, raised) = self.alarm;
-        match alarm {
-            // the tick in which it is raised was asked for before
-            Some(Alarm::Emergency) if since(raised) > 0 && at != before => {
-                return Err(("rest", format!("emergency stop, and the pins moved {}", by())));
-            }
-            Some(alarm) if since(raised) > self.calm && self.stage == ThreadStage::None && at != before => {
-                return Err(("rest", format!("{alarm}, {} ticks ago, and the pins moved {}", since(raised), by())));
-            }
-            _ => {}
-        }
-        let quiet = since(self.stirred.max(self.state.1)) > self.calm;
-        let stands = match shown.state {
-            State::Idle | State::Ended | State::Holding | State::Stopped => true,
-            // driven by hands only
-            State::Running => matches!(shown.mode, Mode::Linked | Mode::Retrace),
-            State::Filling | State::Resetting => false,
-        };
-        let threads = !matches!(self.stage, ThreadStage::None | ThreadStage::Left);
-        if quiet && stands && !threads && at != before {
-            return Err(("rest", format!("nobody asked for it ({:?}), and the pins moved {}", shown.state, by())));
-        }
-        let guarded = matches!(shown.mode, Mode::Automatic | Mode::ManualData | Mode::Linked | Mode::Retrace);
-        if path && guarded && self.guard.0 && since(self.guard.1) > self.calm && !threads {
-            return Err((
-                "rest",
-                format!("the guard has been open for {} ticks, and the program moves", since(self.guard.1)),
-            ));
-        }
-        Ok(())
-    }
-
-    /// The books of an axis.
-    fn count(
-        &mut self,
-        index: usize,
-        tick: &Tick<'_>,
-        (before, at): (Lattice, Lattice),
-        coverage: &mut Coverage,
-    ) -> Result<(), (&'static str, String)> {
-        let Some(books) = self.axes.get_mut(index) else { return Ok(()) };
-        let (axis, shown) = (books.axis, tick.shown);
-        let pins = part(at, axis);
-        // a pulse that is planned now may be made in the next tick, as the shaper has no room for it before
-        let rests = pins == part(before, axis) && part(shown.position, axis) == books.at;
-        books.still = if rests { books.still.saturating_add(1) } else { 0 };
-        books.at = part(shown.position, axis);
-        let plain = pins - *tick.compensation.of(axis);
-        let verified = *shown.verified.of(axis);
-        if verified && !books.verified && shown.mode == Mode::Homing && !self.locked {
-            // home was found: the place is another one, and nothing is beside it
-            books.shift = part(shown.position, axis) - plain;
-            books.own = books.shift;
-            books.clicks.forget();
-            if part(shown.offset, axis) != 0 || part(shown.kept, axis) != 0 || part(shown.wear, axis) != 0 {
-                return Err(("home", format!("{axis:?} is home with an offset")));
-            }
-        }
-        books.verified = verified;
-        if self.locked {
-            books.clicks.forget();
-            return Ok(());
-        }
-        let off = part(shown.position, axis) - books.shift - plain;
-        let stands = books.still >= STANDS && shown.speed == 0;
-        if off.abs() > if stands { 0 } else { IN_FLIGHT } {
-            let what = if stands { "at rest" } else { "moving" };
-            return Err(("count", format!("{what}, {axis:?} shows {off} pulses more than the pins have counted")));
-        }
-        let own = plain + books.own;
-        // of what a compensation has just given, a pulse that would turn the axis round may still be owed
-        if books.given.0 != *tick.compensation.of(axis) {
-            books.given = (*tick.compensation.of(axis), tick.tick);
-        }
-        let owed = i32::from(!stands && tick.tick - books.given.1 <= u64::from(STANDS));
-        let figures = self.operation.axes.of(axis);
-        if verified {
-            let (least, most) = figures.limits;
-            let [now, next] = books.allowed.get_or_insert([(least.min(own), most.max(own)); 2]);
-            if own < now.0 - owed || own > now.1 + owed {
-                return Err(("soft-limit", format!("{axis:?} is at {own} of {least} to {most} pulses")));
-            }
-            // beyond its limit a path goes on for a tick if it can brake from there without leading farther out than it is now:
-            // where it turns round out there, it is held, and brakes within where it was when it went on last
-            if shown.speed == 0 || shown.state == State::Running {
-                *now = *next;
-            }
-            *next = (least.min(own).max(now.0), most.max(own).min(now.1));
-            if (own == least || own == most) && books.still == 0 {
-                coverage.happened("soft limit reached");
-            }
-        } else {
-            books.allowed = None;
-        }
-        let (offset, (least, most)) = (part(shown.offset, axis), figures.bounds);
-        let bound = books.bound.get_or_insert((least.min(offset), most.max(offset)));
-        if offset < bound.0 || offset > bound.1 {
-            return Err(("bound", format!("the offset of {axis:?} is {offset} of {least} to {most} pulses")));
-        }
-        *bound = (least.min(offset), most.max(offset));
-        let reach =
-            i32::try_from(25_000_000 * u64::from(books.pulse.denominator()) / u64::from(books.pulse.numerator()));
-        let reach = reach.unwrap_or(i32::MAX);
-        let (folded, free) = match shown.mode {
-            Mode::Handwheel => (true, true),
-            Mode::Automatic | Mode::ManualData | Mode::Linked | Mode::Retrace => (false, true),
-            Mode::Power | Mode::Homing => (true, false),
-        };
-        let ends = *tick.inputs.ends.of(axis);
-        let (low, high) = figures.limits;
-        let near = ends.plus || ends.minus || !folded || own - low < reach || high - own < reach;
-        let (Some(click), true) = (self.click, free && shown.alarm.is_none()) else {
-            books.clicks.forget();
-            return Ok(());
-        };
-        let place = if folded { part(shown.programmed, axis) } else { offset };
-        let turned = Turned {
-            place,
-            counts: *tick.inputs.wheels.of(axis),
-            dropped: *shown.dropped.of(axis),
-            click,
-            near,
-            rests: tick.rests,
-        };
-        match books.clicks.tick(&turned, books.pulse) {
-            Ok(true) => coverage.happened("wheel counted exactly"),
-            Ok(false) => {}
-            Err(text) => return Err(("wheel", format!("{axis:?}: {text}"))),
-        }
-        Ok(())
-    }
-
     /// The curve of the program.
     fn follow(&mut self, tick: &Tick<'_>, coverage: &mut Coverage) -> Result<(), (&'static str, String)> {
         let (shown, report) = (tick.shown, tick.report);
@@ -536,14 +280,11 @@ impl Oracle {
             return Ok(());
         }
         let wheel = matches!(shown.mode, Mode::Linked | Mode::Retrace);
-        if matches!(report.driven.stage, ThreadStage::Returning | ThreadStage::Entering) {
-            track.jumps();
-        }
-        // the spindle that drives a thread comes to rest with a last swing back, or what is foretold of it does
-        let driven = wheel || report.driven.stage != ThreadStage::None;
-        if moved && !track.follow(shown.programmed, driven) {
+        let reading = tick.inputs.spindle.map(|reading| reading.counts);
+        track.turn(reading, report.driven.stage, f64::from(report.speed) / 4096.0);
+        if let Err(text) = track.follow(shown.programmed, wheel) {
             let Lattice { x, z } = shown.programmed;
-            return Err(("curve", format!("line {}: X {x} Z {z} is no point of the program's curve", report.line)));
+            return Err(("curve", format!("line {}: X {x} Z {z} is {text}", report.line)));
         }
         if moved && wheel {
             coverage.happened("path run by a wheel");
@@ -557,33 +298,6 @@ impl Oracle {
         Ok(())
     }
 
-    /// An alarm has a cause.
-    pub(super) fn cause(&self, alarm: Alarm, tick: &Tick<'_>) -> Result<(), Failure> {
-        let ends = |axis: Axis| {
-            let ends = tick.inputs.ends.of(axis);
-            ends.plus || ends.minus
-        };
-        let caused = match alarm {
-            Alarm::Emergency => tick.pressed,
-            Alarm::LimitSwitchX => ends(Axis::X),
-            Alarm::LimitSwitchZ => ends(Axis::Z),
-            Alarm::Homing => tick.shown.mode == Mode::Homing,
-            // no board counts them here, and no scale is there
-            Alarm::Underrun | Alarm::Overrun | Alarm::Late | Alarm::Watchdog | Alarm::PowerReturned => false,
-            Alarm::FollowingX | Alarm::FollowingZ => false,
-            Alarm::SpindleStopped
-            | Alarm::SpindleReversed
-            | Alarm::IndexLost
-            | Alarm::EncoderNoise
-            | Alarm::NoSpindle
-            | Alarm::SpindleTooFast
-            | Alarm::SpindleTooRough
-            | Alarm::NoWayBack => self.spindle_asked,
-        };
-        let text = format!("{alarm}: without a cause");
-        if caused { Ok(()) } else { Err(Failure { tick: tick.tick, rule: "cause".into(), text }) }
-    }
-
     /// The session is over: what the pins have broken.
     pub(super) fn finish(mut self) -> Option<Failure> {
         // notes may end in the midst of a motion: what would follow is not that all stands
@@ -595,16 +309,4 @@ impl Oracle {
         let tick = first.clocks / u64::from(interp_core::config::TICK_CLOCKS);
         Some(Failure { tick, rule: format!("limits {:?}", first.kind), text: first.to_string() })
     }
-}
-
-/// Ticks in which anything that moves comes to rest: each axis brakes from its largest speed with what a hand has of its
-/// acceleration, an S law runs on by its window; twice that, and half a second.
-fn calm(machine: &Machine) -> u64 {
-    let of = |axis: Axis| {
-        let limits = if axis == Axis::X { &machine.x } else { &machine.z };
-        let share = limits.by_hand.min(limits.accel).max(1);
-        u64::from(limits.speed / share)
-    };
-    let slowest = AXES.into_iter().map(of).max().unwrap_or(0);
-    2 * (slowest + u64::from(machine.smoothing.ticks()) + 64) + 500
 }
