@@ -282,7 +282,7 @@ impl Foreground<'_> {
 
     /// The speed that the joystick pulls at.
     fn pull_speed(&mut self) -> Speed {
-        match (self.desk.inputs.rapid, self.desk.power.feed) {
+        match (self.desk.inputs.rapid, self.desk.feed()) {
             (true, _) | (false, Feed::Rapid | Feed::Thread(..)) => {
                 let rapid = self.desk.on_way().map(|way| way.rapid);
                 rapid.map_or(Speed::MAX, |rapid| percent(rapid, self.channel.rapid_override()))

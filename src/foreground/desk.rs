@@ -126,7 +126,7 @@ impl Desk {
             contour: None,
             way: None,
             wheels: Wheels::new(),
-            power: Power::new(Feed::PerTick(1 << 12)),
+            power: Power::new(),
             homing: homing::Phase::Rest,
             dry_run: false,
             locked: None,
@@ -202,6 +202,11 @@ impl Desk {
         } else {
             at
         }
+    }
+
+    /// Feed of power feed.
+    pub(super) fn feed(&self) -> Feed {
+        self.power.feed.unwrap_or(Feed::PerTick(self.settings.power))
     }
 
     /// Feed of a dry run, in one.

@@ -36,8 +36,8 @@ pub(super) enum Phase {
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Power {
     pub(super) phase: Phase,
-    /// The feed asked for.
-    pub(super) feed: Feed,
+    /// The feed asked for, if one was.
+    pub(super) feed: Option<Feed>,
     /// Shoulder stops, in the program's pulses.
     pub(super) stops: PerAxis<Option<i32>>,
     /// Whether each axis moved to plus when it moved last.
@@ -56,17 +56,17 @@ pub(super) struct Power {
 }
 
 impl Power {
-    pub(super) const fn new(feed: Feed) -> Self {
+    pub(super) const fn new() -> Self {
         Self {
             phase: Phase::Rest,
-            feed,
+            feed: None,
             stops: PerAxis { x: None, z: None },
             came: PerAxis { x: None, z: None },
             began: None,
             threaded: false,
             repeats: 0,
             rapid: false,
-            runs_at: feed,
+            runs_at: Feed::Rapid,
             done: Joystick::Off,
         }
     }
@@ -207,9 +207,10 @@ impl Foreground<'_> {
         let end = self.desk.power.end(axis, plus, at, at.saturating_add(far));
         let mut to = position;
         *part_mut(&mut to, axis) = self.desk.representable(axis, end);
-        let (power, rapid) = (&mut self.desk.power, self.desk.inputs.rapid);
+        let (feed, rapid) = (self.desk.feed(), self.desk.inputs.rapid);
+        let power = &mut self.desk.power;
         (power.began, power.threaded) = (Some(position), false);
-        (power.rapid, power.runs_at) = (rapid, power.feed);
+        (power.rapid, power.runs_at) = (rapid, feed);
         if self.begin_line(to, self.desk.power.runs()) {
             self.desk.power.phase = Phase::Feed { axis, plus };
         } else {
@@ -222,9 +223,10 @@ impl Foreground<'_> {
 
     /// Sets the feed of what runs: the one asked for, or rapid.
     fn feed_at(&mut self) {
-        let (power, rapid) = (&mut self.desk.power, self.desk.inputs.rapid);
-        if (power.rapid, power.runs_at) != (rapid, power.feed) {
-            (power.rapid, power.runs_at) = (rapid, power.feed);
+        let (feed, rapid) = (self.desk.feed(), self.desk.inputs.rapid);
+        let power = &mut self.desk.power;
+        if (power.rapid, power.runs_at) != (rapid, feed) {
+            (power.rapid, power.runs_at) = (rapid, feed);
             let runs = power.runs();
             self.channel.set_feed(runs);
         }

@@ -86,7 +86,7 @@ impl Foreground<'_> {
             }
             Command::Settle(settings) => self.desk.settings = settings,
             Command::Scale(click) => self.desk.wheels.set_scale(click),
-            Command::FeedRate(feed) => self.desk.power.feed = feed,
+            Command::FeedRate(feed) => self.desk.power.feed = Some(feed),
             Command::StopAt(axis, stop) => self.set_stop(axis, stop)?,
             Command::Contour(contour) => {
                 self.drop_path();

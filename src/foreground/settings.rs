@@ -40,6 +40,8 @@ pub struct Settings {
     pub safe: Speed,
     /// Feed of a dry run.
     pub dry: Speed,
+    /// Feed of power feed until another one is asked for.
+    pub power: Speed,
     /// Switches that a board reads.
     pub fitted: Fitted,
 }
@@ -51,6 +53,6 @@ impl Settings {
         let fitted = Fitted { guard: true, ends: true };
         let axis =
             AxisSettings { limits: far, bounds: far, home_plus: true, home_speed: 1 << 12, home: 0, following: 0 };
-        Self { axes: PerAxis { x: axis, z: axis }, wheels: true, safe: 1 << 12, dry: 1 << 12, fitted }
+        Self { axes: PerAxis { x: axis, z: axis }, wheels: true, safe: 1 << 12, dry: 1 << 12, power: 1 << 12, fitted }
     };
 }

@@ -74,7 +74,7 @@ impl Foreground<'_> {
             }
             return Ok(());
         }
-        let Feed::PerTurn(lead) = self.desk.power.feed else { return Err(Refusal::NoLead) };
+        let Some(Feed::PerTurn(lead)) = self.desk.power.feed else { return Err(Refusal::NoLead) };
         self.engage(lead)
     }
 

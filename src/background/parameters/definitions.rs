@@ -122,7 +122,8 @@ pub(super) mod index {
     pub(in super::super) const THREAD_RETRACT: usize = 68;
     pub(in super::super) const GUARD_SWITCH: usize = 69;
     pub(in super::super) const LIMIT_SWITCHES: usize = 70;
-    pub(in super::super) const COUNT: usize = 71;
+    pub(in super::super) const POWER_FEED: usize = 71;
+    pub(in super::super) const COUNT: usize = 72;
 }
 
 /// Methods that this build has, in the order of [`Method::ALL`].
@@ -235,4 +236,5 @@ pub static DEFINITIONS: [Definition; index::COUNT] = [
     ),
     definition("guard_switch", "", Kind::Switch, "true", "boards: a closed contact tells that the guard is closed"),
     definition("limit_switches", "", Kind::Switch, "false", "boards: limit switches, closed until they are met"),
+    definition("power_feed", "mm/min", FEED, "60", "feed of power feed until feed-rate sets another"),
 ];

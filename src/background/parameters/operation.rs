@@ -35,6 +35,7 @@ impl Parameters {
             wheels: self.switch(index::HANDWHEELS),
             safe: speed_of(self.feed(index::SAFE_FEED)),
             dry: speed_of(self.feed(index::DRY_FEED)),
+            power: speed_of(self.feed(index::POWER_FEED)),
             fitted: Fitted { guard: self.switch(index::GUARD_SWITCH), ends: self.switch(index::LIMIT_SWITCHES) },
         }
     }

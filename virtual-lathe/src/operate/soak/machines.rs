@@ -52,6 +52,8 @@ pub(super) fn machine(chance: &mut Chance) -> Vec<(String, String)> {
         let methods = ["point-comparison", "dda", "rate-multiplier", "fraction", "time-division"];
         put("method", chance.one_of(&methods).into());
     }
+    // as good as none: operators set a feed when they want to go
+    put("power_feed", "0.06".into());
     if chance.once_in(3) {
         put("safe_feed", format!("{:.0}", chance.spread(60.0, 3_000.0)));
     }
