@@ -13,7 +13,7 @@
 use interp_core::block::{Block, Builder, Pace, Path, Work};
 use interp_core::channel::{Channel, State};
 use interp_core::compensation::pitch::PitchTable;
-use interp_core::compensation::{Config, Temperatures};
+use interp_core::compensation::{Compensation, Config, Temperatures};
 use interp_core::config::{AxisConfig, Config as MachineConfig, Machine, TICK_CLOCKS};
 use interp_core::train::{Event, Levels};
 use interp_core::units::{Axis, Feedrate, Lattice, Length, Point, PulseSize, Sense};
@@ -296,6 +296,34 @@ fn what_is_due_is_made_at_rest_and_nothing_while_the_pins_are_mute() {
     lathe.run();
     assert_eq!(lathe.motor[1], -400 - 80);
     assert!(!lathe.channel.owes());
+}
+
+/// An alarm has stopped it half-way: another acceleration of the axis makes it right no more than it was.
+#[test]
+fn what_is_due_stays_due_with_another_acceleration() {
+    let plan = |accel: u32| {
+        let mut machine = bare();
+        machine.z.accel = accel;
+        machine.compensated(&config(0, 5, 0), &config(200, 5, 0), Temperatures::default()).compensation
+    };
+    let (accel, tool) = (bare().z.accel, Lattice { x: 0, z: -100 });
+    let mut compensation = Compensation::new(&plan(accel), Lattice::default());
+    // faces minus, then turns round
+    let ticks = |compensation: &mut Compensation, tool: Lattice, ticks: u32| {
+        (0..ticks).map(|_| compensation.tick(tool, false).1).sum::<i32>()
+    };
+    let all = ticks(&mut compensation, tool, 500);
+    let back = Lattice { x: 0, z: 100 };
+    let part = ticks(&mut compensation, back, 12);
+    assert!(part != 0 && all + part != 0, "{all} {part}");
+    compensation.stop(back);
+    let given = compensation.given(Axis::Z);
+    compensation.configure(&plan(accel / 2), back);
+    assert_eq!(compensation.given(Axis::Z), given);
+    // given when the axis moves again
+    let on = Lattice { x: 0, z: 101 };
+    assert_eq!(all + part + ticks(&mut compensation, on, 2_000), compensation.given(Axis::Z));
+    assert_eq!(compensation.given(Axis::Z), 0);
 }
 
 #[test]

@@ -200,13 +200,14 @@ impl AxisCompensation {
         self.follower = Follower::at(self.target);
     }
 
-    /// Takes other figures where they are others; a machine that stands at `position` counts as right with those.
+    /// Takes other figures where they are others; a machine that stands at `position` counts as right with those. How fast it gives
+    /// is none of them: what an alarm has left due stays due.
     fn configure(&mut self, plan: AxisPlan, warmer: i32, position: i32) {
-        let same = self.plan == plan && self.thermal.is_for(warmer);
+        let same = AxisPlan { pace: plan.pace, ..self.plan } == plan && self.thermal.is_for(warmer);
+        self.plan = plan;
         if same {
             return;
         }
-        self.plan = plan;
         self.backlash.configure(plan.backlash, plan.distance);
         self.pitch.configure(plan.pulse);
         self.thermal.configure(plan.thermal, plan.origin);
