@@ -1,0 +1,147 @@
+//! A path that goes on: after a hold, and where it was led back over.
+#![allow(clippy::unwrap_used, clippy::arithmetic_side_effects, missing_docs, reason = "tests")]
+
+use interp_core::block::{Block, Builder, Pace, Path, Work};
+use interp_core::channel::{Channel, Report, State};
+use interp_core::config::{AxisConfig, Config, Machine};
+use interp_core::drive::wheel::Click;
+use interp_core::drive::{Drive, Inputs};
+use interp_core::law::SpeedLaw;
+use interp_core::train::Event;
+use interp_core::units::{Feedrate, Lattice, Length, Point, PulseSize};
+
+/// Largest jerk, mm/s3.
+const JERK: u32 = 50_000;
+
+/// Ends of the program's lines, pulses of a micrometre: a run along Z, and so short ones along X that each takes but some ticks.
+const ENDS: [(i32, i32); 6] = [(0, 2_000), (200, 2_000), (400, 2_000), (600, 2_000), (600, 2_300), (900, 2_300)];
+
+fn machine(law: SpeedLaw) -> Machine {
+    let axis = AxisConfig {
+        pulse: PulseSize::new(1_000, 1).unwrap(),
+        max_feed: Feedrate::from_nm_per_min(5_000_000_000).unwrap(),
+        max_accel: 500_000,
+        max_jump: 2_000,
+        pulse_width_ns: 5_000,
+        dir_setup_ns: 5_000,
+        dir_hold_ns: 10_000,
+        min_space_ns: 5_000,
+    };
+    let machine = Config { x: axis, z: axis, event_min_ns: 2_000 }.check().unwrap();
+    machine.with_law(law, JERK).unwrap()
+}
+
+/// The program; lines are counted from 1.
+fn program(machine: &Machine) -> Vec<Block> {
+    let at = |(x, z): (i32, i32)| Point { x: Length::from_um(x).unwrap(), z: Length::from_um(z).unwrap() };
+    let feed = Pace::Feed(Feedrate::from_nm_per_min(1_500_000_000).unwrap());
+    let mut builder = Builder::new(machine, at((0, 0)));
+    let mut blocks = Vec::new();
+    for (end, line) in ENDS.into_iter().zip(1..) {
+        let motions = builder.motion(Path::Line, at(end), feed).motions;
+        blocks.extend(motions.iter().map(|motion| Block { line, work: Work::Motion(*motion) }));
+    }
+    blocks.push(Block { line: 7, work: Work::End });
+    blocks
+}
+
+struct Bench {
+    channel: Channel<16>,
+    blocks: std::vec::IntoIter<Block>,
+}
+
+impl Bench {
+    fn tick(&mut self, wheel: i16) -> Report {
+        self.channel.read(&Inputs { spindle: None, wheel });
+        let blocks = &mut self.blocks;
+        self.channel.tick(&mut || blocks.next(), &mut |_: Event| {})
+    }
+
+    /// Advances until it stands in a state other than running; the advance of each tick, and in which line.
+    fn run(&mut self) -> Vec<(u32, i64)> {
+        let mut advance = Vec::new();
+        loop {
+            let report = self.tick(0);
+            advance.push((report.line, i64::from(report.speed)));
+            if !matches!(report.state, State::Running | State::Filling) {
+                return advance;
+            }
+            assert!(advance.len() < 10_000, "does not end");
+        }
+    }
+
+    /// In single block, at the end of the second line: back into the first by so many counts of a micrometre, forward by some, and
+    /// in automatic again.
+    fn led_back(law: SpeedLaw, counts: i16, forward: i16) -> Self {
+        let machine = machine(law);
+        let blocks = program(&machine).into_iter();
+        let mut bench = Self { channel: Channel::new(&machine, Lattice::default()), blocks };
+        bench.channel.set_single_block(true);
+        assert!(bench.channel.start());
+        bench.run();
+        assert!(bench.channel.start());
+        bench.run();
+        assert_eq!(bench.channel.position(), Lattice { x: 200, z: 2_000 });
+        bench.channel.set_drive(Drive::Wheel(Click::from_nm(4_000).unwrap())).unwrap();
+        assert!(bench.channel.start());
+        for tick in 0..2_000 {
+            bench.tick(if tick < counts { -1 } else { 0 });
+        }
+        for tick in 0..2_000 {
+            bench.tick(if tick < forward { 1 } else { 0 });
+        }
+        let back = i32::from(counts) - i32::from(forward) - 200;
+        assert_eq!(bench.channel.position(), Lattice { x: 0, z: 2_000 - back });
+        assert!(bench.channel.hold());
+        bench.channel.set_drive(Drive::Time).unwrap();
+        assert!(bench.channel.start());
+        bench
+    }
+}
+
+/// What is run again for a part stands at each line's end from that of the line begun last on, to the pulse.
+#[test]
+fn a_path_led_back_goes_on_in_single_block() {
+    for law in [SpeedLaw::Linear] {
+        // some where a tick at the start-stop speed, 2 um, leads over the joint, and one at the joint
+        for counts in [203, 204, 205, 206, 207, 208, 250, 251, 777, 1_300] {
+            let forward = if counts == 250 { 50 } else { 0 };
+            let mut bench = Bench::led_back(law, counts, forward);
+            // to the end of the line that was begun last: nothing stands before that
+            bench.run();
+            assert_eq!(bench.channel.position(), Lattice { x: 200, z: 2_000 }, "{law:?} {counts}");
+            for (end, line) in ENDS.into_iter().zip(1..).skip(2) {
+                assert!(bench.channel.start());
+                bench.run();
+                let (x, z) = end;
+                assert_eq!(bench.channel.position(), Lattice { x, z }, "{law:?} {counts}: end of line {line}");
+            }
+            assert_eq!(bench.channel.state(), State::Ended);
+        }
+    }
+}
+
+/// A hold in a line and cycle start: the line is done to its end, and the next one waits.
+#[test]
+fn a_start_in_the_midst_of_a_line_lets_no_other_line_pass_in_single_block() {
+    for law in SpeedLaw::ALL {
+        for tick in (1..60).step_by(9) {
+            let machine = machine(law);
+            let blocks = program(&machine).into_iter();
+            let mut bench = Bench { channel: Channel::new(&machine, Lattice::default()), blocks };
+            bench.channel.set_single_block(true);
+            assert!(bench.channel.start());
+            while bench.tick(0).speed == 0 {}
+            for _ in 0..tick {
+                bench.tick(0);
+            }
+            assert!(bench.channel.hold());
+            while bench.tick(0).speed != 0 {}
+            assert!(bench.channel.position().z < 2_000);
+            assert!(bench.channel.start());
+            bench.run();
+            assert_eq!(bench.channel.position(), Lattice { x: 0, z: 2_000 }, "{law:?} {tick}");
+            assert_eq!(bench.channel.state(), State::Stopped);
+        }
+    }
+}
