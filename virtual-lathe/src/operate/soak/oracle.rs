@@ -218,7 +218,7 @@ impl Oracle {
             self.watch.joint();
         }
         let added = !tick.rests || !self.rested || self.compensation != tick.compensation;
-        if added {
+        if added || self.retracts(tick) {
             self.watch.added();
         }
         (self.rested, self.compensation) = (tick.rests, tick.compensation);
@@ -229,6 +229,16 @@ impl Oracle {
         }
         if std::mem::take(&mut self.stopped) {
             self.watch.cut();
+        }
+    }
+
+    /// X goes out of a thread, or into it, beside the path or right after it: its way has a rounding of its own, as a hand's has.
+    fn retracts(&self, tick: &Tick<'_>) -> bool {
+        let [x, _] = &self.axes;
+        match tick.report.driven.stage {
+            ThreadStage::Leaving | ThreadStage::Entering => true,
+            ThreadStage::Left => x.still < STANDS,
+            ThreadStage::None | ThreadStage::Waiting | ThreadStage::Cutting | ThreadStage::Returning => false,
         }
     }
 
