@@ -37,3 +37,18 @@ fn a_tapered_thread_is_left_at_any_time_within_the_limits() {
         assert!(keeps_every_rule("tapered-thread", program, &script), "reset at {tick} ms");
     }
 }
+
+/// A thread that was begun by the contour wheel ends by its spindle, with nobody at the wheel: of its last tick's pulses some come a
+/// tick later.
+#[test]
+fn a_thread_begun_by_the_wheel_comes_to_its_end_by_itself() {
+    for hundredths in (800..900).step_by(7) {
+        let program = format!(
+            "G18 G21 G90 G94\nS600 M3\nG4 P1\nG1 X0.1 F300\nG33 X0.5 Z-{:.2} K0.25\nG0 X1\nM30\n",
+            f64::from(hundredths) / 1e2
+        );
+        let script = "0.000 mode auto\n0.000 load 0.nc\n0.000 start\n1.005 hold\n1.200 mode retrace\n\
+             1.300 wheel contour +20 over 0.3\n9.000 mode retrace\n";
+        assert!(keeps_every_rule("thread-by-wheel", &program, script), "{program}");
+    }
+}

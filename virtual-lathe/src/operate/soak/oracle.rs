@@ -93,6 +93,8 @@ pub(super) struct Oracle {
     path: (u32, State, State, bool),
     to_go: u64,
     stage: ThreadStage,
+    /// Last tick in which a thread was under way.
+    threaded: u64,
     click: Option<i64>,
     /// Threads, feeds a turn or the lever: the spindle has a part in what runs.
     spindle_asked: bool,
@@ -128,6 +130,7 @@ impl Oracle {
             path: (0, State::Idle, State::Idle, true),
             to_go: 0,
             stage: ThreadStage::None,
+            threaded: 0,
             click: Some(10_000),
             spindle_asked: false,
             offset_was: false,
@@ -173,6 +176,9 @@ impl Oracle {
                 ThreadStage::Returning | ThreadStage::Entering => {}
             }
             self.stage = stage;
+        }
+        if !matches!(stage, ThreadStage::None | ThreadStage::Left) {
+            self.threaded = tick.tick;
         }
         self.rest(tick, (before, at))?;
         for index in 0..2 {
