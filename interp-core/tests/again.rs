@@ -17,11 +17,15 @@ const JERK: u32 = 50_000;
 const ENDS: [(i32, i32); 6] = [(0, 2_000), (200, 2_000), (400, 2_000), (600, 2_000), (600, 2_300), (900, 2_300)];
 
 fn machine(law: SpeedLaw) -> Machine {
+    machine_jumping(law, 2_000)
+}
+
+fn machine_jumping(law: SpeedLaw, jump: u32) -> Machine {
     let axis = AxisConfig {
         pulse: PulseSize::new(1_000, 1).unwrap(),
         max_feed: Feedrate::from_nm_per_min(5_000_000_000).unwrap(),
         max_accel: 500_000,
-        max_jump: 2_000,
+        max_jump: jump,
         pulse_width_ns: 5_000,
         dir_setup_ns: 5_000,
         dir_hold_ns: 10_000,
@@ -31,14 +35,20 @@ fn machine(law: SpeedLaw) -> Machine {
     machine.with_law(law, JERK).unwrap()
 }
 
+fn point((x_um, z_um): (i32, i32)) -> Point {
+    Point { x: Length::from_um(x_um).unwrap(), z: Length::from_um(z_um).unwrap() }
+}
+
+fn feed(mm_min: u64) -> Pace {
+    Pace::Feed(Feedrate::from_nm_per_min(mm_min * 1_000_000).unwrap())
+}
+
 /// The program; lines are counted from 1.
 fn program(machine: &Machine) -> Vec<Block> {
-    let at = |(x, z): (i32, i32)| Point { x: Length::from_um(x).unwrap(), z: Length::from_um(z).unwrap() };
-    let feed = Pace::Feed(Feedrate::from_nm_per_min(1_500_000_000).unwrap());
-    let mut builder = Builder::new(machine, at((0, 0)));
+    let mut builder = Builder::new(machine, point((0, 0)));
     let mut blocks = Vec::new();
     for (end, line) in ENDS.into_iter().zip(1..) {
-        let motions = builder.motion(Path::Line, at(end), feed).motions;
+        let motions = builder.motion(Path::Line, point(end), feed(1_500)).motions;
         blocks.extend(motions.iter().map(|motion| Block { line, work: Work::Motion(*motion) }));
     }
     blocks.push(Block { line: 7, work: Work::End });
@@ -153,5 +163,51 @@ fn a_start_in_the_midst_of_a_line_lets_no_other_line_pass_in_single_block() {
             assert_eq!(bench.channel.position(), Lattice { x: 0, z: 2_000 }, "{law:?} {tick}");
             assert_eq!(bench.channel.state(), State::Stopped);
         }
+    }
+}
+
+/// Where a path that was led back stands for single block or a dwell, an axis that turns round there jumps to rest, and from rest: a
+/// tick at least ends in standstill.
+#[test]
+fn a_path_led_back_stands_before_an_axis_turns_round() {
+    let machine = machine_jumping(SpeedLaw::Linear, 10_000);
+    // Z forth and back, some times, with a dwell in the middle
+    let mut blocks = Vec::new();
+    let mut builder = Builder::new(&machine, point((0, 0)));
+    for (z, line) in [1_000, 0, 1_000, 0, 1_000].into_iter().zip(1..) {
+        let motions = builder.motion(Path::Line, point((0, z)), feed(1_500)).motions;
+        blocks.extend(motions.iter().map(|motion| Block { line, work: Work::Motion(*motion) }));
+        if line == 2 {
+            builder.standstill();
+            blocks.push(Block { line, work: Work::Dwell(3) });
+        }
+    }
+    for single in [false, true] {
+        let mut bench =
+            Bench { channel: Channel::new(&machine, Lattice::default()), blocks: blocks.clone().into_iter() };
+        bench.channel.set_drive(Drive::Wheel(Click::from_nm(4_000).unwrap())).unwrap();
+        assert!(bench.channel.start());
+        for wheel in [10, -10] {
+            for tick in 0..2_000 {
+                bench.tick(if tick < 450 { wheel } else { 0 });
+            }
+        }
+        assert!(bench.channel.position().z < 600);
+        assert!(bench.channel.hold());
+        bench.channel.set_drive(Drive::Time).unwrap();
+        bench.channel.set_single_block(single);
+        assert!(bench.channel.start());
+        let (mut at, mut before, mut stood, mut turns) = (bench.channel.position().z, 0, true, 0);
+        for _ in 0..2_000 {
+            let report = bench.tick(0);
+            let by = bench.channel.position().z - at;
+            // 10 pulses a tick of jump, half a pulse of acceleration, and rounding
+            let jumps = (by - before).abs() > 10 + 1 + 2;
+            turns += i32::from(by * before < 0 || stood && by != 0);
+            assert!(!jumps || stood, "single {single}: from {before} to {by} pulses a tick");
+            stood = report.speed == 0;
+            (at, before) = (at + by, if by == 0 { before } else { by });
+        }
+        assert!(turns >= 2, "{turns}");
     }
 }
