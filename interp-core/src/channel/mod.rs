@@ -492,8 +492,9 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         }
         if self.memory.borrow().trail.is_behind() {
             // what is not ready yet is waited for
-            let goes = self.memory.borrow_mut().trail.go_on();
-            return if goes && self.enter_again() { Next::Goes } else { Next::Stands };
+            let goes = self.memory.borrow_mut().trail.go_on() && self.enter_again();
+            // from standstill it begins with the next tick: a stop and a start are two jumps; and an S law's lead sets off there
+            return if goes && self.speed > 0 { Next::Goes } else { Next::Stands };
         }
         // the tool is where it should be before the program stands; and only a cycle moves what is added
         let moves = self.memory.borrow().ahead.next().is_some_and(|(block, _)| lookahead::as_motion(block).is_some());

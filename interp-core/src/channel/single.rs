@@ -3,9 +3,8 @@
 //! A line may make several blocks; they belong together. A stop needs its way: a motion that is too fast to stop at the end of
 //! its line when single block is switched on goes on into the next.
 
-use super::Channel;
-use super::Memory;
 use super::lookahead::Lookahead;
+use super::{Channel, Current, Memory};
 use core::borrow::BorrowMut;
 
 /// Single block.
@@ -53,11 +52,16 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         self.single.on
     }
 
-    /// Cycle start lets the next line pass.
+    /// Cycle start lets the next line pass, where the path stands before it. Where it stands in a line, after a hold, or has been
+    /// led back, it goes on to the end of the line that was begun last.
     pub(super) fn pass_single(&mut self) {
-        if let Some((block, _)) = self.memory.borrow().ahead.next() {
-            self.single.passed = block.line;
-        }
+        let Memory { ahead, trail } = self.memory.borrow();
+        self.single.passed = match (ahead.next(), &self.current) {
+            _ if trail.is_behind() => trail.line(),
+            (Some((block, _)), Current::Nothing) => block.line,
+            (None, Current::Nothing) => self.single.passed,
+            (_, Current::Motion(_) | Current::Dwell(_)) => self.line,
+        };
     }
 
     /// Whether the block that comes next waits for cycle start.

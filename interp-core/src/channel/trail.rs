@@ -121,6 +121,11 @@ impl Trail {
         self.window.back().filter(|_| !self.short).map(|last| &last.motion)
     }
 
+    /// The line of the motion begun last, where there is one.
+    pub(super) fn line(&self) -> u32 {
+        self.history.line()
+    }
+
     /// The motion so many before the newest of the window.
     fn before_newest(&self, behind: usize) -> Option<&Trod> {
         let index = self.window.len().checked_sub(behind.checked_add(1)?)?;

@@ -49,7 +49,8 @@ impl MotorWatch {
         self.accel.joint();
     }
 
-    /// In the tick to come pulses are added to the path's, by a handwheel or a compensation: they have a rounding of their own.
+    /// In the tick to come pulses are added to the path's, by a handwheel, a compensation or a way out of a thread: they have a rounding
+    /// of their own.
     pub fn added(&mut self) {
         self.accel.added();
     }

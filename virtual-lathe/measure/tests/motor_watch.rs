@@ -67,6 +67,59 @@ fn the_largest_acceleration_is_no_fault_and_a_larger_one_is() {
     assert!(faults.count(FaultKind::Acceleration) + faults.count(FaultKind::Jump) > 0);
 }
 
+/// Faults where X is pulled out of a thread along Z by all of its acceleration, 40 mm/s2 from the 100th tick and a part of it on,
+/// while the thread's taper leads it in by `taper` pulses a tick: two ways, each to the nearest pulse of its own, of which the pins
+/// show the sum. A pulse that would turn the axis round waits for its opposite, 16 ticks at most.
+fn pulled_out(taper: f64, phase: f64, begin: f64, told: bool) -> u64 {
+    let mut setup = setup();
+    (setup.limits.x.max_accel, setup.limits.z.max_jump, setup.event_min_ns) = (40.0, 1e3, 0);
+    #[allow(clippy::cast_possible_truncation, reason = "some hundred pulses")]
+    let nearest = |place: f64| (place + 0.5).floor() as i32;
+    let (mut steps, mut at, mut sense, mut waited) = (Vec::new(), nearest(phase), 0, 0);
+    for tick in 0..250_u32 {
+        let start = u64::from(tick) * 12_000;
+        steps.extend((0..4).map(|n| Step { clocks: start + 1_000 + 3_000 * n, x: 0, z: 1 }));
+        let ticks = f64::from(tick + 1);
+        let out = (ticks - 100.0 - begin).max(0.0);
+        let by = nearest(phase - taper * ticks) + nearest(0.04 * out * out / 2.0) - at;
+        if by.abs() == 1 && by == -sense && waited < 16 {
+            waited += 1;
+            continue;
+        }
+        waited = 0;
+        if by != 0 {
+            sense = by.signum();
+        }
+        for clocks in (start + 1_500..).step_by(1_000).take(by.unsigned_abs() as usize) {
+            steps.push(Step { clocks, x: sense, z: 0 });
+        }
+        at += by;
+    }
+    steps.sort_by_key(|step| step.clocks);
+    let mut watch = MotorWatch::new(setup).unwrap();
+    for tick in train(&steps) {
+        if told {
+            watch.added();
+        }
+        watch.tick(&tick, &mut |_, _, _| {});
+    }
+    watch.cut();
+    watch.finish().count(FaultKind::Acceleration)
+}
+
+#[test]
+fn a_way_that_is_added_to_the_paths_has_a_rounding_of_its_own() {
+    let mut seen = 0;
+    for taper in 1..30 {
+        for phase in 0..20 {
+            let (taper, phase, begin) = (f64::from(taper) / 60.0, f64::from(phase) / 20.0, f64::from(phase % 5) / 5.0);
+            assert_eq!(pulled_out(taper, phase, begin, true), 0, "{taper} {phase}");
+            seen += pulled_out(taper, phase, 0.4, false);
+        }
+    }
+    assert!(seen > 0, "two roundings fake no more than one");
+}
+
 #[test]
 fn a_speed_above_the_largest_is_a_fault() {
     // 100 mm/s are allowed

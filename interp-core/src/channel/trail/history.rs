@@ -69,6 +69,11 @@ impl History {
         self.newest
     }
 
+    /// The line of the motion noted last.
+    pub(super) fn line(&self) -> u32 {
+        self.slot(self.newest).line()
+    }
+
     const fn holds(&self, place: u32) -> bool {
         let age = self.next.wrapping_sub(place);
         age > 0 && age <= self.used

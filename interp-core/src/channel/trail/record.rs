@@ -138,6 +138,12 @@ impl Slot {
         (main, if usual { None } else { Some(rest) })
     }
 
+    /// The line of the program of the first of two.
+    pub(super) const fn line(&self) -> u32 {
+        let Self([line, ..]) = *self;
+        line
+    }
+
     /// Whether this is the second of two.
     pub(super) const fn is_rest(&self) -> bool {
         let Self([_, word, ..]) = *self;

@@ -93,6 +93,8 @@ pub(super) struct Oracle {
     path: (u32, State, State, bool),
     to_go: u64,
     stage: ThreadStage,
+    /// Last tick in which a thread was under way.
+    threaded: u64,
     click: Option<i64>,
     /// Threads, feeds a turn or the lever: the spindle has a part in what runs.
     spindle_asked: bool,
@@ -128,6 +130,7 @@ impl Oracle {
             path: (0, State::Idle, State::Idle, true),
             to_go: 0,
             stage: ThreadStage::None,
+            threaded: 0,
             click: Some(10_000),
             spindle_asked: false,
             offset_was: false,
@@ -174,6 +177,9 @@ impl Oracle {
             }
             self.stage = stage;
         }
+        if !matches!(stage, ThreadStage::None | ThreadStage::Left) {
+            self.threaded = tick.tick;
+        }
         self.rest(tick, (before, at))?;
         for index in 0..2 {
             self.count(index, tick, (before, at), coverage)?;
@@ -218,7 +224,7 @@ impl Oracle {
             self.watch.joint();
         }
         let added = !tick.rests || !self.rested || self.compensation != tick.compensation;
-        if added {
+        if added || self.retracts(tick) {
             self.watch.added();
         }
         (self.rested, self.compensation) = (tick.rests, tick.compensation);
@@ -229,6 +235,16 @@ impl Oracle {
         }
         if std::mem::take(&mut self.stopped) {
             self.watch.cut();
+        }
+    }
+
+    /// X goes out of a thread, or into it, beside the path or right after it: its way has a rounding of its own, as a hand's has.
+    fn retracts(&self, tick: &Tick<'_>) -> bool {
+        let [x, _] = &self.axes;
+        match tick.report.driven.stage {
+            ThreadStage::Leaving | ThreadStage::Entering => true,
+            ThreadStage::Left => x.still < STANDS,
+            ThreadStage::None | ThreadStage::Waiting | ThreadStage::Cutting | ThreadStage::Returning => false,
         }
     }
 

@@ -48,7 +48,8 @@ impl Oracle {
             State::Running => matches!(shown.mode, Mode::Linked | Mode::Retrace),
             State::Filling | State::Resetting => false,
         };
-        let threads = !matches!(self.stage, ThreadStage::None | ThreadStage::Left);
+        // its last pulse may have had no room in its tick, or be owed
+        let threads = since(self.threaded) < super::STANDS.into();
         if quiet && stands && !threads && at != before {
             return Err(("rest", format!("nobody asked for it ({:?}), and the pins moved {}", shown.state, by())));
         }
