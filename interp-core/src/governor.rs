@@ -92,8 +92,12 @@ impl Bend {
         if angle >= QUARTER_Q30 {
             return self.full;
         }
-        let s = sine(angle);
-        let c = cosine_from_sine(s);
+        let (s, c) = if angle < SMALL {
+            small(angle)
+        } else {
+            let s = sine(angle);
+            (s, cosine_from_sine(s))
+        };
         let product = |p: i64, q: i64| p.wrapping_mul(q) >> 30;
         if product(c, exit.cosine) <= product(s, exit.sine) {
             return self.full;
@@ -101,6 +105,19 @@ impl Bend {
         let sum = product(s, exit.cosine).wrapping_add(product(c, exit.sine)).clamp(0, RADIAN_Q30).unsigned_abs();
         (self.full >> 30).wrapping_mul(sum).saturating_add((self.full & 0x3FFF_FFFF).wrapping_mul(sum) >> 30)
     }
+}
+
+/// An angle, 30 fraction bits, below which three terms of the series are exact to the last bits.
+const SMALL: i64 = 1 << 25;
+
+/// Sine and cosine of an angle from 0 to [`SMALL`]: what short arcs turn by, and any arc's last ticks.
+#[expect(clippy::cast_possible_truncation, reason = "small powers of a small angle")]
+const fn small(angle: i64) -> (i64, i64) {
+    let square = angle.wrapping_mul(angle) >> 30;
+    // below 2^15 and 2^10
+    let (cube, fourth) = (angle.wrapping_mul(square) >> 30, square.wrapping_mul(square) >> 30);
+    let (cube, fourth) = (cube.cast_unsigned() as u32 / 6, fourth.cast_unsigned() as u32 / 24);
+    (angle.wrapping_sub(cube as i64), RADIAN_Q30.wrapping_sub(square / 2).wrapping_add(fourth as i64))
 }
 
 impl Motion {
@@ -344,13 +361,22 @@ mod tests {
         let machine = Config { x: axis, z: axis, event_min_ns: 2_000 }.check().ok()?;
         let angle = f64::from(part) * core::f64::consts::TAU / 1024.0;
         let at = |angle: f64| (f64::from(radius) * angle.cos(), f64::from(radius) * angle.sin());
-        let point = |(x, z): (f64, f64)| {
-            Some(Point { x: Length::from_um(x as i32 - radius)?, z: Length::from_um(z as i32)? })
-        };
+        let point =
+            |(x, z): (f64, f64)| Some(Point { x: Length::from_um(x as i32 - radius)?, z: Length::from_um(z as i32)? });
         let mut builder = Builder::new(&machine, point(at(0.0))?);
         let path = Path::Arc { centre: (i64::from(radius) * -1_000, 0), sense: Sense::CounterClockwise };
         let pace = Pace::Feed(Feedrate::from_nm_per_min(5_000_000_000)?);
         builder.motion(path, point(at(angle))?, pace).motions.first().copied()
+    }
+
+    #[test]
+    fn small_angles_have_the_sines_and_cosines_of_f64() {
+        for angle in (0..=SMALL).step_by(997) {
+            let exact = angle as f64 / RADIAN_Q30 as f64;
+            let (s, c) = small(angle);
+            let off = |found: i64, exact: f64| (found as f64 - exact * RADIAN_Q30 as f64).abs();
+            assert!(off(s, exact.sin()) < 2.0 && off(c, exact.cos()) < 2.0, "{angle}: {s} {c}");
+        }
     }
 
     proptest! {
