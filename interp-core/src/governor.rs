@@ -92,8 +92,12 @@ impl Bend {
         if angle >= QUARTER_Q30 {
             return self.full;
         }
-        let s = sine(angle);
-        let c = cosine_from_sine(s);
+        let (s, c) = if angle < SMALL {
+            small(angle)
+        } else {
+            let s = sine(angle);
+            (s, cosine_from_sine(s))
+        };
         let product = |p: i64, q: i64| p.wrapping_mul(q) >> 30;
         if product(c, exit.cosine) <= product(s, exit.sine) {
             return self.full;
@@ -101,6 +105,19 @@ impl Bend {
         let sum = product(s, exit.cosine).wrapping_add(product(c, exit.sine)).clamp(0, RADIAN_Q30).unsigned_abs();
         (self.full >> 30).wrapping_mul(sum).saturating_add((self.full & 0x3FFF_FFFF).wrapping_mul(sum) >> 30)
     }
+}
+
+/// An angle, 30 fraction bits, below which three terms of the series are exact to the last bits.
+const SMALL: i64 = 1 << 25;
+
+/// Sine and cosine of an angle from 0 to [`SMALL`]: what short arcs turn by, and any arc's last ticks.
+#[expect(clippy::cast_possible_truncation, reason = "small powers of a small angle")]
+const fn small(angle: i64) -> (i64, i64) {
+    let square = angle.wrapping_mul(angle) >> 30;
+    // below 2^15 and 2^10
+    let (cube, fourth) = (angle.wrapping_mul(square) >> 30, square.wrapping_mul(square) >> 30);
+    let (cube, fourth) = (cube.cast_unsigned() as u32 / 6, fourth.cast_unsigned() as u32 / 24);
+    (angle.wrapping_sub(cube as i64), RADIAN_Q30.wrapping_sub(square / 2).wrapping_add(fourth as i64))
 }
 
 impl Motion {
@@ -161,6 +178,21 @@ impl Motion {
         }
     }
 
+    /// Whether it is plain that [`reachable`](Self::reachable) is at least `wanted`, a squared speed within the motion's limit;
+    /// where not, only the whole sum tells. A path that turns by 2^-14 gains more from the exit on than the sum is rounded by.
+    pub(crate) fn plainly_reaches(&self, distance: u64, exit: u64, wanted: u64) -> bool {
+        const TURNED: u64 = 1 << 16;
+        let angle = match &self.curve {
+            Curve::Arc(arc) => arc.timeline.angle.of(distance),
+            #[cfg(feature = "methods")]
+            Curve::Conic(piece) => piece.angle.of(distance),
+            Curve::Line(..) => TURNED,
+            #[cfg(feature = "methods")]
+            Curve::ClassicLine(..) => TURNED,
+        };
+        exit >= wanted && angle >= TURNED && wanted <= square(self.limit)
+    }
+
     /// Acceleration left along the path at a speed.
     fn along(&self, speed: Speed) -> u32 {
         match self.bend() {
@@ -183,8 +215,10 @@ impl Motion {
     /// leaves of the acceleration.
     #[inline(never)]
     pub fn advance_gently(&self, speed: Speed, left: u64, exit: u64, target: Speed, clocks: u32) -> Advance {
-        let met = self.reachable(left, exit);
-        let hardest = if square(speed) > met.saturating_add(met >> 4) { self.along(speed) } else { self.accel };
+        let squared = square(speed);
+        // what the exit itself allows, less than rounding takes, need not be computed
+        let met = if squared <= exit.saturating_add(exit >> 5) { exit } else { self.reachable(left, exit) };
+        let hardest = if squared > met.saturating_add(met >> 4) { self.along(speed) } else { self.accel };
         self.advance_within(speed, left, exit, target, clocks, hardest)
     }
 
@@ -236,6 +270,9 @@ impl Motion {
     fn ending(&self, speed: Speed, wish: Speed, left: u64, exit: u64, clocks: u32) -> Speed {
         match self.bend() {
             None => self.brake_straight(speed, left, exit, part(self.straight(), clocks).max(1)),
+            Some(_) if self.plainly_reaches(left.saturating_sub(covered(speed, wish, clocks)), exit, square(wish)) => {
+                wish
+            }
             Some(bend) => {
                 // the speed allowed depends on how far the stretch leads, which depends on the speed: two rounds
                 let heading = bend.heading(exit);
@@ -298,4 +335,66 @@ const fn ratio_q30(part: u64, whole: u64) -> i64 {
     let (low, _) = divided(rest << 10, whole);
     let ratio = high << 20 | middle << 10 | low;
     ratio as i64
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::block::{Builder, Pace, Path};
+    use crate::config::{AxisConfig, Config};
+    use crate::units::{Feedrate, Length, Point, PulseSize, Sense};
+    use proptest::prelude::*;
+
+    /// An arc of so much of a turn (in 1024ths) with this radius, um, at its largest speed.
+    fn arc(radius: i32, part: i32, accel: u32) -> Option<Motion> {
+        let axis = AxisConfig {
+            pulse: PulseSize::new(1000, 1)?,
+            max_feed: Feedrate::from_nm_per_min(5_000_000_000)?,
+            max_accel: accel * 1_000,
+            max_jump: 2_000,
+            pulse_width_ns: 5_000,
+            dir_setup_ns: 5_000,
+            dir_hold_ns: 5_000,
+            min_space_ns: 5_000,
+        };
+        let machine = Config { x: axis, z: axis, event_min_ns: 2_000 }.check().ok()?;
+        let angle = f64::from(part) * core::f64::consts::TAU / 1024.0;
+        let at = |angle: f64| (f64::from(radius) * angle.cos(), f64::from(radius) * angle.sin());
+        let point =
+            |(x, z): (f64, f64)| Some(Point { x: Length::from_um(x as i32 - radius)?, z: Length::from_um(z as i32)? });
+        let mut builder = Builder::new(&machine, point(at(0.0))?);
+        let path = Path::Arc { centre: (i64::from(radius) * -1_000, 0), sense: Sense::CounterClockwise };
+        let pace = Pace::Feed(Feedrate::from_nm_per_min(5_000_000_000)?);
+        builder.motion(path, point(at(angle))?, pace).motions.first().copied()
+    }
+
+    #[test]
+    fn small_angles_have_the_sines_and_cosines_of_f64() {
+        for angle in (0..=SMALL).step_by(997) {
+            let exact = angle as f64 / RADIAN_Q30 as f64;
+            let (s, c) = small(angle);
+            let off = |found: i64, exact: f64| (found as f64 - exact * RADIAN_Q30 as f64).abs();
+            assert!(off(s, exact.sin()) < 2.0 && off(c, exact.cos()) < 2.0, "{angle}: {s} {c}");
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        /// What is plain is so: never is less reachable, to the last bit.
+        #[test]
+        fn what_is_plainly_reached_is_reachable(
+            radius in 200_i32..200_000, part in 1_i32..500, accel in 100_u32..10_000,
+            exit in 0.0..1.05_f64, wanted in prop_oneof![0.9..1.0_f64, Just(1.0)], way in prop_oneof![0.0..1.0_f64, 0.0..1e-3]
+        ) {
+            let Some(motion) = arc(radius, part, accel) else { return Ok(()) };
+            let exit = (square(motion.limit) as f64 * exit) as u64;
+            let wanted = ((exit as f64 * wanted) as u64).min(exit).min(square(motion.limit));
+            let distance = (motion.length as f64 * way) as u64;
+            if motion.plainly_reaches(distance, exit, wanted) {
+                prop_assert!(motion.reachable(distance, exit) >= wanted);
+            }
+        }
+    }
 }

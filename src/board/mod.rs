@@ -11,6 +11,7 @@
 
 #[cfg(not(feature = "board-qemu"))]
 mod backup;
+mod copy;
 mod fall;
 mod fault;
 #[cfg(feature = "board-qemu")]

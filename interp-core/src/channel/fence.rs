@@ -9,6 +9,9 @@
 //! else:                it is held, which leads through no more than the reach that the hand has left free
 //! ```
 //!
+//! What the path leads through if it goes on for a tick is at least what it leads through if it brakes a tick later: so in a
+//! tick behind one in which it was allowed to go on, the hands' room is that which it left then, and the path is looked at once.
+//!
 //! So what is planned of both is inside in every tick. A tool that is beyond (a limit was set to the inside of it) may come back,
 //! not go farther. The path is held only where it does lead out: one that turns before the fence, or ends on it, is not.
 //!
@@ -26,6 +29,11 @@ use crate::units::{Axis, Lattice};
 
 /// Pulses that steps may be off the length that they belong to: rounded at both ends, and a classic method's deviation.
 const ROUGH: i32 = 4;
+
+/// Ticks at the largest speeds that are added to what braking needs at most before a limit: there the path begins to be looked
+/// at, and a few ticks later the hands' room to be asked for, so that it is known then.
+const PATH_AHEAD: u8 = 16;
+const HANDS_AHEAD: u8 = 8;
 
 /// As good as no limit, pulses.
 const FAR: i32 = i32::MAX >> 1;
@@ -65,6 +73,13 @@ impl Span {
             least: Lattice { x: self.least.x.max(least.x), z: self.least.z.max(least.z) },
             most: Lattice { x: self.most.x.min(most.x), z: self.most.z.min(most.z) },
         }
+    }
+
+    /// Whether a place is inside, and on no side.
+    #[inline]
+    const fn surrounds(&self, at: Lattice) -> bool {
+        let Self { least, most } = self;
+        at.x > least.x && at.x < most.x && at.z > least.z && at.z < most.z
     }
 
     pub(super) const fn part(&self, axis: Axis) -> (i32, i32) {
@@ -169,11 +184,12 @@ impl Braking {
 #[derive(Clone, Debug)]
 pub(super) struct Fence {
     inside: Span,
-    /// From there nothing that moves is braked past it.
+    /// From there nothing that moves is braked past it: the path, and a hand.
     calm: Span,
+    free: Span,
     /// Where the path was held: the axis, and whether to plus.
     met: Option<(Axis, bool)>,
-    /// What the path leads through if it brakes in the tick to come, once somebody has asked.
+    /// What the path leads through if it brakes in the tick to come, or more, where that is known.
     brakes: Option<Span>,
 }
 
@@ -182,20 +198,25 @@ impl Fence {
     pub(super) const fn new() -> Self {
         let far = Lattice { x: FAR, z: FAR };
         let all = Span { least: Lattice { x: -FAR, z: -FAR }, most: far };
-        Self { inside: all, calm: all, met: None, brakes: None }
+        Self { inside: all, calm: all, free: all, met: None, brakes: None }
     }
 
-    /// The path goes on.
+    /// What is known of the path is over.
     #[inline]
     pub(super) const fn forget(&mut self) {
         self.brakes = None;
     }
 
-    /// Whether nothing there is braked past it.
+    /// Whether no path there is braked past it, wherever it leads to in the next tick.
     #[inline]
     pub(super) const fn is_calm(&self, at: Lattice) -> bool {
-        let Span { least, most } = &self.calm;
-        at.x > least.x && at.x < most.x && at.z > least.z && at.z < most.z
+        self.calm.surrounds(at)
+    }
+
+    /// Whether a hand there has all room.
+    #[inline]
+    pub(super) const fn is_free(&self, at: Lattice) -> bool {
+        self.free.surrounds(at)
     }
 
     /// Room of an axis that something else leads through a part of, to either side.
@@ -223,16 +244,20 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     pub fn set_fence(&mut self, least: Lattice, most: Lattice) {
         self.fence.inside = Span { least, most };
         self.fence.brakes = None;
-        let way = self.hands.longest_braking(self.window.ticks());
-        let (mut x, z) = self.hands.pulses_of(way);
-        x = x.saturating_add(self.crank.thread.distance().saturating_abs());
         let near = |limit: i32, by: i32| if limit.saturating_abs() >= FAR { limit } else { limit.saturating_add(by) };
-        let least = Lattice { x: near(least.x, x), z: near(least.z, z) };
-        let most = Lattice { x: near(most.x, x.wrapping_neg()), z: near(most.z, z.wrapping_neg()) };
-        self.fence.calm = Span { least, most };
+        let out = self.crank.thread.distance().saturating_abs();
+        let before = |ahead: u8| {
+            let way = self.hands.longest_braking(self.window.ticks().saturating_add(ahead));
+            let (x, z) = self.hands.pulses_of(way);
+            let x = x.saturating_add(out);
+            let least = Lattice { x: near(least.x, x), z: near(least.z, z) };
+            let most = Lattice { x: near(most.x, x.wrapping_neg()), z: near(most.z, z.wrapping_neg()) };
+            Span { least, most }
+        };
+        (self.fence.calm, self.fence.free) = (before(PATH_AHEAD), before(HANDS_AHEAD));
     }
 
-    /// What the path leads through if it brakes in the tick to come, in the program's pulses.
+    /// What the path leads through if it brakes in the tick to come, or more, in the program's pulses.
     pub(super) fn braking_reach(&mut self) -> Span {
         if let Some(span) = self.fence.brakes {
             return span;
@@ -278,7 +303,8 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     #[cold]
     pub(super) fn is_fenced(&mut self, back: bool) -> bool {
         let (offset, by_hand) = (self.hands.offset(), self.hands.braking());
-        let span = self.reach(back, true).moved(offset);
+        let reach = self.reach(back, true);
+        let span = reach.moved(offset);
         let span = span.and(span.moved(by_hand));
         let mut here = self.tool();
         here.x = here.x.saturating_add(self.retracted());
@@ -287,6 +313,9 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         if met.is_some() {
             let _ = self.hold();
             self.fence.met = met;
+        } else if !self.crank.turns {
+            // a path that is turned may be turned back
+            self.fence.brakes = Some(reach);
         }
         met.is_some()
     }

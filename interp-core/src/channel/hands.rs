@@ -184,10 +184,10 @@ impl Hands {
         self.x.accel.saturating_add(self.z.accel)
     }
 
-    /// More than anything needs to brake, with what an S law of so many ticks has planned: nm with 12 fraction bits.
+    /// More than anything needs to brake, and so many ticks at the largest speeds: nm with 12 fraction bits.
     pub(super) fn longest_braking(&self, ticks: u8) -> u64 {
         let speed = u64::from(self.x.speed).saturating_add(self.z.speed.into());
-        self.braking_from(speed).saturating_add(speed.saturating_mul(u64::from(ticks).saturating_add(16)))
+        self.braking_from(speed).saturating_add(speed.saturating_mul(ticks.into()))
     }
 
     /// More than anything needs to brake from a speed: nm with 12 fraction bits.
@@ -289,7 +289,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let offset = self.hands.offset;
         let (mut least, mut most) = ends;
         let mut bound = |(low, high): (i32, i32)| (least, most) = (least.max(low.min(0)), most.min(high.max(0)));
-        if !self.fence.is_calm(self.tool()) {
+        if !self.fence.is_free(self.tool()) {
             let span = self.braking_reach().moved(offset);
             bound(self.fence.room(axis, &span));
         }

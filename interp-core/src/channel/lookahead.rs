@@ -53,6 +53,15 @@ impl Planned {
             motion.reachable(room, exit)
         }
     }
+
+    /// The same, at most `most`.
+    fn reachable_up_to(&self, most: u64, motion: &Motion, room: u64, exit: u64) -> u64 {
+        if self.bent && motion.plainly_reaches(room, exit, most) {
+            most
+        } else {
+            self.reachable(motion, room, exit).min(most)
+        }
+    }
 }
 
 /// The blocks to come, at most `N`.

@@ -311,13 +311,13 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let retract = self.crank.thread.pulses();
         let (x, z) = self.by_hand(retract);
         let x = x.wrapping_add(retract);
+        self.fence.forget();
         let moves = in_cycle || !self.hands.at_rest();
         // what the compensation lacks when all has come to rest is made then
         if moves || x != 0 || z != 0 || self.lags() {
             if x != 0 || z != 0 || self.compensation.is_on() {
                 self.superpose(x, z, moves);
             }
-            self.fence.forget();
             if in_cycle {
                 self.slide();
                 self.keep_inside();

@@ -72,6 +72,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         if idle {
             let before = self.tool();
             self.position = position;
+            self.fence.forget();
             self.compensation.rename(before, self.tool());
         }
         idle

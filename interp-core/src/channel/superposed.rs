@@ -52,11 +52,13 @@ impl Added {
     }
 
     /// When the next one is due, if any.
+    #[inline]
     fn due(&self) -> Option<u32> {
         (self.left > 0).then_some(self.times.time)
     }
 
     /// Takes the next one.
+    #[inline]
     fn take(&mut self) -> i8 {
         self.left = self.left.wrapping_sub(1);
         self.times.time = self.times.time.wrapping_add(self.times.spacing);
@@ -64,6 +66,7 @@ impl Added {
     }
 
     /// A pulse that is due (or none) at a clock: what is to be made now of an axis that faces plus or not, at most one pulse.
+    #[inline]
     fn offer(&mut self, clock: u32, pulse: i8, faces_plus: bool) -> i8 {
         let owed = self.owed.wrapping_add(pulse);
         let turns = (owed > 0) != faces_plus;
@@ -216,6 +219,7 @@ impl Superposed {
     }
 
     /// Whether steps would turn an axis round against what is added to it in this tick.
+    #[inline]
     fn opposes(&self, strides: &Strides, shaper: &Shaper) -> bool {
         let axis = |added: &Added, axis: Axis| match shaper.turns(strides, axis) {
             Some(true) => added.sign < 0,
@@ -227,11 +231,13 @@ impl Superposed {
     }
 
     /// Whether a pulse is owed.
+    #[inline]
     const fn waits(&self) -> bool {
         self.x.owed != 0 || self.z.owed != 0
     }
 
     /// When the next one is due.
+    #[inline]
     fn next(&self) -> Option<u32> {
         match (self.x.due(), self.z.due()) {
             (Some(x), Some(z)) => Some(x.min(z)),

@@ -13,8 +13,24 @@ pub(crate) trait Word: Copy {
     fn plus(self, other: Self) -> Self;
     /// Whether it is 0 or above.
     fn is_reached(self) -> bool;
-    /// How often `step` was added to `from` to come here, below 2^11.
-    fn times_from(self, from: Self, step: Self) -> u32;
+    /// How often `step`, of which there is a divisor where words are wide, was added to `from` to come here: below 2^11.
+    fn times_from(self, from: Self, step: Self, divisor: Divisor) -> u32;
+}
+
+/// What multiples of a wide number, below the 2^11th one, are divided by in 32 bits.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Divisor {
+    /// Bits cut off so that a multiple fits 32 bits. What is left has 21 of them: more than the remainders, one each, add up to.
+    cut: u32,
+    one: u32,
+}
+
+impl Divisor {
+    pub(super) const fn new(step: i64) -> Self {
+        let step = step.unsigned_abs();
+        let cut = 43_u32.saturating_sub(step.leading_zeros());
+        Self { cut, one: to_u32(step.wrapping_shr(cut)) }
+    }
 }
 
 impl Word for i64 {
@@ -35,11 +51,9 @@ impl Word for i64 {
         self >= 0
     }
     #[inline]
-    fn times_from(self, from: Self, step: Self) -> u32 {
-        let (all, one) = (self.wrapping_sub(from).unsigned_abs(), step.unsigned_abs());
-        // cut so that the multiple fits 32 bits, a step keeps 20 of them: more than its remainders, one each, add up to
-        let cut = 32_u32.saturating_sub(all.leading_zeros());
-        to_u32(all.wrapping_shr(cut)).checked_div(to_u32(one.wrapping_shr(cut))).unwrap_or(0)
+    fn times_from(self, from: Self, _: Self, divisor: Divisor) -> u32 {
+        let all = self.wrapping_sub(from).unsigned_abs();
+        to_u32(all.wrapping_shr(divisor.cut)).checked_div(divisor.one).unwrap_or(0)
     }
 }
 
@@ -62,7 +76,7 @@ impl Word for i32 {
         self >= 0
     }
     #[inline(always)]
-    fn times_from(self, from: Self, step: Self) -> u32 {
+    fn times_from(self, from: Self, step: Self, _: Divisor) -> u32 {
         self.wrapping_sub(from).unsigned_abs().checked_div(step.unsigned_abs()).unwrap_or(0)
     }
 }
@@ -78,6 +92,7 @@ pub(crate) struct ArcRow<W> {
     pub(super) before: (W, W),
     /// The major axis's rise at the last diagonal step.
     pub(super) turned: W,
+    pub(super) divisors: [Divisor; 2],
 }
 
 impl<W: Word> Turns for ArcRow<W> {
@@ -89,8 +104,9 @@ impl<W: Word> Turns for ArcRow<W> {
     #[inline(always)]
     fn turned(&self, _: u32) -> Turned {
         // the rises change evenly, so they tell how often they did
-        let count = self.minor_rise.times_from(self.before.1, self.minor_curve);
-        Turned { count, last: self.turned.times_from(self.before.0, self.major_curve) }
+        let [major, minor] = self.divisors;
+        let count = self.minor_rise.times_from(self.before.1, self.minor_curve, minor);
+        Turned { count, last: self.turned.times_from(self.before.0, self.major_curve, major) }
     }
 }
 

@@ -10,7 +10,7 @@
 //! curve where there is a gap.
 
 use super::arc::Arc;
-use super::arc_row::{ArcRow, Word};
+use super::arc_row::{ArcRow, Divisor, Word};
 use super::strides::{Strides, Turns};
 use super::{Step, Walker};
 use crate::math::to_u32;
@@ -36,6 +36,8 @@ pub struct ArcWalker {
     /// Change of `decision` with a step of the minor axis, and the change of that.
     minor_rise: i64,
     minor_curve: i64,
+    /// `major_curve` and `minor_curve` to divide by, where they are wide.
+    divisors: [Divisor; 2],
     strides: Strides,
     /// Steps of the minor axis up to the lattice line nearest the centre, beyond which `decision` would see the far
     /// side of the curve. Where travel leads away from the centre, `u32::MAX` less the steps back to that line. So
@@ -70,6 +72,7 @@ impl Arc {
             major_curve: 0,
             minor_rise: 0,
             minor_curve: 0,
+            divisors: [Divisor::default(); 2],
             strides: Strides::default(),
             minors: 0,
             narrow: false,
@@ -328,6 +331,9 @@ impl ArcWalker {
         self.narrow = self.decision.unsigned_abs() < FITS
             && fits(self.major_rise, self.major_curve)
             && fits(self.minor_rise, self.minor_curve);
+        if !self.narrow {
+            self.divisors = [Divisor::new(self.major_curve), Divisor::new(self.minor_curve)];
+        }
     }
 
     /// One step inside the octant; the caller knows that there is one.
@@ -383,6 +389,7 @@ impl ArcWalker {
             minor_curve: W::from_wide(self.minor_curve),
             before: (W::from_wide(self.major_rise), W::from_wide(self.minor_rise)),
             turned: W::from_wide(self.major_rise),
+            divisors: self.divisors,
         };
         let (steps, diagonals) = make(&mut row);
         self.decision = row.decision.wide();

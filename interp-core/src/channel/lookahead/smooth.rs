@@ -137,22 +137,23 @@ impl<const N: usize> Lookahead<N> {
             let (exit, mut margins) = next.unwrap_or_else(|| (0, Margins::reserve(motion, ticks)));
             let entry = match before {
                 Some(before) if !planned.stands => {
+                    let own = own.unwrap_or_else(|| Paces::of(motion, overrides));
+                    let hard = motion.joint.min(motion.limit);
+                    let most = hard.min(own.pace).min(before.pace);
                     let entry = if margins.are_empty() {
-                        planned.reachable(motion, motion.length, exit)
+                        planned.reachable_up_to(square(most), motion, motion.length, exit)
                     } else {
                         let way = margins.way(motion, motion.length, exit);
                         margins.pass(motion.length);
-                        planned.reachable(motion, way.room, way.exit).min(square(way.cap))
+                        planned.reachable_up_to(square(most.min(way.cap)), motion, way.room, way.exit)
                     };
-                    let own = own.unwrap_or_else(|| Paces::of(motion, overrides));
-                    let hard = motion.joint.min(motion.limit);
                     if hard < before.most {
                         margins.keep(hard, ticks);
                     }
                     if own.pace < hard.min(before.pace) {
                         margins.keep(own.pace, ticks);
                     }
-                    entry.min(square(hard.min(own.pace).min(before.pace)))
+                    entry
                 }
                 _ => {
                     margins = Margins::EMPTY;
