@@ -78,7 +78,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut counted = Vec::new();
     let wanted = |case: &&Case| arguments.only.as_ref().is_none_or(|text| case.0.contains(text));
     for case in CASES.iter().filter(wanted) {
-        counted.push((case.0, measure(&elf, &plugin, folder.path(), case).with_context(|| case.0)?));
+        let run = || measure(&elf, &plugin, folder.path(), case).with_context(|| case.0);
+        // once in some hundred runs the plugin still meets what it does not understand: such a run is none, and the next one
+        // differs in when its lines arrive
+        let counts = run().or_else(|_| run()).or_else(|_| run())?;
+        counted.push((case.0, counts));
     }
     let mut cases = Map::new();
     for (name, counts) in &counted {
