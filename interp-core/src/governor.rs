@@ -338,6 +338,7 @@ const fn ratio_q30(part: u64, whole: u64) -> i64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "tests")]
 mod tests {
     extern crate std;
     use super::*;
