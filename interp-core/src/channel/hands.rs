@@ -20,6 +20,7 @@ use super::hand::{ENDLESS, Hand, Room, beside};
 use super::{Channel, Current, State};
 use crate::block::Speed;
 use crate::config::{AxisLimits, FRACTION_BITS, Machine};
+use crate::drive::ThreadStage;
 use crate::drive::follower::Bounds;
 use crate::drive::wheel::Click;
 use crate::math::to_u32;
@@ -68,11 +69,12 @@ impl AxisHand {
         }
     }
 
-    /// What it may do in a tick, after one in which the program moved the axis by `moved`; `None` where it stands.
-    fn bounds(&self, moved: Option<i32>) -> Bounds {
+    /// What it may do in a tick, after one in which the program moved the axis by so many pulses, at no more than a speed; `None`
+    /// where it stands.
+    fn bounds(&self, moved: Option<(i32, Speed)>) -> Bounds {
         let (speed, accel) = match moved {
             None => (self.speed, self.accel.saturating_add(self.by_hand)),
-            Some(pulses) => (beside(self.speed, pulses, self.accel, self.pulse), self.by_hand),
+            Some(moved) => (beside(self.speed, moved, self.accel, self.pulse), self.by_hand),
         };
         Bounds { speed: speed.min(self.pace), accel: accel.max(1) }
     }
@@ -215,10 +217,10 @@ impl Hands {
         target.min(to_u32(u64::from(limit).wrapping_mul(u64::from(self.left)) >> 16))
     }
 
-    /// Moves for a tick beside a program that has got to `position`; `moves` tells whether it may move. The pulses of X and Z.
+    /// Moves for a tick beside a program that has got to `position` and has a speed, if it may move. The pulses of X and Z.
     #[cold]
-    fn tick(&mut self, moves: bool, position: Lattice) -> (i32, i32) {
-        let moved = |axis: &AxisHand, at: i32| moves.then(|| at.wrapping_sub(axis.at));
+    fn tick(&mut self, path: Option<Speed>, position: Lattice) -> (i32, i32) {
+        let moved = |axis: &AxisHand, at: i32| path.map(|path| (at.wrapping_sub(axis.at), path));
         let (x, z) = (self.x.bounds(moved(&self.x, position.x)), self.z.bounds(moved(&self.z, position.z)));
         let pulses = (self.x.tick(x), self.z.tick(z));
         let rest = self.at_rest();
@@ -231,6 +233,18 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// Whether the program may move in the tick to come.
     const fn may_move(&self) -> bool {
         self.speed > 0 || matches!(self.state, State::Running | State::Filling)
+    }
+
+    /// More than the program may lead an axis at in the tick to come, but for the acceleration; `None` where it stands.
+    const fn path_speed(&self) -> Option<Speed> {
+        if !self.may_move() {
+            None
+        } else if self.crank.in_thread || !matches!(self.crank.thread.stage(), ThreadStage::None) {
+            // X has a way of its own out of a thread
+            Some(Speed::MAX)
+        } else {
+            Some(self.speed)
+        }
     }
 
     /// The tick of the hands: pulses of X and Z to be added to the program's, which pulls X out of a thread by `retract`.
@@ -252,7 +266,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
 
     #[cold]
     fn move_by_hand(&mut self, retract: i32) -> (i32, i32) {
-        let moves = self.may_move() || retract != 0;
+        let path = if retract == 0 { self.path_speed() } else { Some(Speed::MAX) };
         for axis in [Axis::X, Axis::Z] {
             let hand = self.hands.of(axis);
             if hand.room.is_none() && !hand.hand.is_at_rest() {
@@ -262,7 +276,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         // the retract is the program's, too
         let away = self.position.x.wrapping_sub(self.hands.x.at).saturating_abs();
         self.hands.x.at = self.position.x.wrapping_sub(away).wrapping_sub(retract.saturating_abs());
-        let (x, z) = self.hands.tick(moves, self.position);
+        let (x, z) = self.hands.tick(path, self.position);
         let into = |folds: bool, position: &mut i32, offset: &mut i32, pulses: i32| {
             let place = if folds { position } else { offset };
             *place = place.wrapping_add(pulses);
@@ -307,7 +321,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// to either side (at most 0, at least 0), besides fence and bounds. Returns the counts dropped, and whether there was no room
     /// at all for them.
     pub fn turn_hand(&mut self, axis: Axis, click: Click, counts: i16, ends: (i32, i32)) -> (i32, bool) {
-        let moves = self.may_move();
+        let path = self.path_speed();
         let position = match axis {
             Axis::X => self.position.x,
             Axis::Z => self.position.z,
@@ -319,7 +333,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let ((least, most), room) = self.find_room(axis, ends);
         let hand = self.hands.of(axis);
         hand.pace = Speed::MAX;
-        let bounds = hand.bounds(moves.then(|| position.wrapping_sub(hand.at)));
+        let bounds = hand.bounds(path.map(|path| (position.wrapping_sub(hand.at), path)));
         let dropped = hand.hand.turn(click, counts, bounds, room);
         (dropped, dropped < 0 && least == 0 || dropped > 0 && most == 0)
     }
