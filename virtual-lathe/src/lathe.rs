@@ -254,7 +254,9 @@ impl Train for Recorder {
     fn superposed(&mut self, clock: i32, program: Step, made: Step) {
         let clock = u32::try_from(clock).unwrap_or(0);
         let moved = |step: Step| PerAxis { x: i32::from(step.x), z: i32::from(step.z) };
-        self.added.push(Added { clock, program: moved(program), motor: moved(made) });
+        // a step at the tick's end may be told of before a pulse that is made somewhat earlier, as nothing has cancelled it
+        let place = self.added.partition_point(|earlier| earlier.clock <= clock);
+        self.added.insert(place, Added { clock, program: moved(program), motor: moved(made) });
     }
 }
 
