@@ -228,9 +228,8 @@ fn fed() -> Bench {
     bench
 }
 
-#[test]
-fn a_way_back_ends_at_a_shoulder_that_was_set_between() {
-    let mut bench = fed();
+/// From Z -3 mm: with a shoulder at -1 mm, and on without it.
+fn return_over_a_shoulder(bench: &mut Bench) {
     bench.ask(Command::StopAt(Axis::Z, Stop::At(mm(-1)))).unwrap();
     for _ in 0..2 {
         bench.ask(Command::Return).unwrap();
@@ -240,6 +239,12 @@ fn a_way_back_ends_at_a_shoulder_that_was_set_between() {
     bench.ask(Command::StopAt(Axis::Z, Stop::Off)).unwrap();
     bench.ask(Command::Return).unwrap();
     bench.settle();
+}
+
+#[test]
+fn a_way_back_ends_at_a_shoulder_that_was_set_between() {
+    let mut bench = fed();
+    return_over_a_shoulder(&mut bench);
     assert_eq!(bench.at.z, 0);
 }
 
@@ -252,15 +257,7 @@ fn a_way_back_along_the_contour_ends_at_a_shoulder_that_was_set_between() {
     bench.settle();
     bench.inputs.joystick = Joystick::Off;
     bench.ticks(5);
-    bench.ask(Command::StopAt(Axis::Z, Stop::At(mm(-1)))).unwrap();
-    for _ in 0..2 {
-        bench.ask(Command::Return).unwrap();
-        bench.settle();
-        assert_eq!(bench.at.z, -400);
-    }
-    bench.ask(Command::StopAt(Axis::Z, Stop::Off)).unwrap();
-    bench.ask(Command::Return).unwrap();
-    bench.settle();
+    return_over_a_shoulder(&mut bench);
     assert_eq!(bench.at, Lattice::default());
 }
 
