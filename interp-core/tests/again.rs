@@ -211,3 +211,43 @@ fn a_path_led_back_stands_before_an_axis_turns_round() {
         assert!(turns >= 2, "{turns}");
     }
 }
+
+/// Single block, switched on in any tick: the tool stands at the first end of a line that there is way to brake before, and
+/// keeps to the law's acceleration and jerk.
+#[test]
+fn single_block_that_comes_in_motion_stops_where_there_is_way_to_brake_in() {
+    for law in [SpeedLaw::Sine, SpeedLaw::Parabolic] {
+        let machine = machine(law);
+        let mut builder = Builder::new(&machine, point((0, 0)));
+        let mut blocks = Vec::new();
+        for line in 1..=60 {
+            let motions = builder.motion(Path::Line, point((0, 100 * line)), feed(5_000)).motions;
+            blocks
+                .extend(motions.iter().map(|motion| Block { line: line.unsigned_abs(), work: Work::Motion(*motion) }));
+        }
+        blocks.push(Block { line: 61, work: Work::End });
+        for tick in 1..180 {
+            let blocks = blocks.clone().into_iter();
+            let mut bench = Bench { channel: Channel::new(&machine, Lattice::default()), blocks };
+            assert!(bench.channel.start());
+            let mut advance: Vec<i64> = vec![0; 3];
+            advance.extend((0..tick).map(|_| i64::from(bench.tick(0).speed)));
+            let mut held = Bench { channel: bench.channel.clone(), blocks: bench.blocks.clone() };
+            bench.channel.set_single_block(true);
+            advance.extend(bench.run().into_iter().map(|(_, speed)| speed));
+            advance.extend([0; 3]);
+            assert_eq!(bench.channel.state(), State::Stopped);
+            let accel = advance.windows(2).map(|w| (w[1] - w[0]).abs()).max().unwrap() * 1000 / 4096;
+            assert!(accel <= 500_000, "{law:?} {tick}: {accel} um/s2");
+            let jerks = advance.windows(3).map(|w| (w[2] - 2 * w[1] + w[0]).abs());
+            let jerk = jerks.max().unwrap() * 1000 / 4096;
+            assert!(jerk <= i64::from(JERK) * 1_010, "{law:?} {tick}: {jerk} um/s3");
+            // where a hold would have stopped it, and on to the end of the line
+            assert!(held.channel.hold());
+            while held.tick(0).speed != 0 {}
+            let (stopped, held) = (bench.channel.position().z, held.channel.position().z);
+            assert_eq!(stopped % 100, 0, "{law:?} {tick}");
+            assert!((held..held + 105).contains(&stopped), "{law:?} {tick}: {stopped} where a hold stops at {held}");
+        }
+    }
+}

@@ -14,11 +14,11 @@ use super::cruise::Cruise;
 use super::lookahead::smooth::{is_smoothed, most};
 use super::lookahead::{Lookahead, Overrides, pace};
 use super::margins::Margins;
-use super::swath::Groups;
+use super::swath::{Groups, shed};
 use super::{Channel, Current, State};
 use crate::block::{Motion, Speed};
 use crate::config::TICK_CLOCKS;
-use crate::governor::Advance;
+use crate::governor::{Advance, square};
 use crate::math::to_u32;
 use crate::train::Train;
 use core::borrow::BorrowMut;
@@ -161,9 +161,19 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         }
     }
 
+    /// Where the lead is: how many blocks ahead of the one that the tool has begun last, and the squared speed that is left
+    /// behind that block where it brakes from here on.
+    pub(super) fn lead_brakes(&self) -> (usize, u64) {
+        let first = self.lead.block;
+        let ahead = &self.memory.borrow().ahead;
+        let sheds = ahead_of(&self.current, ahead, first)
+            .map_or(0, |motion| shed(motion).saturating_mul(motion.length.saturating_sub(self.lead.done)));
+        (first, square(self.lead.speed).saturating_sub(sheds))
+    }
+
     /// The lead's advance in this tick.
     fn lead_on(&mut self) -> u32 {
-        let runs = matches!(self.state, State::Running);
+        let runs = matches!(self.state, State::Running) && !self.memory.borrow().ahead.is_urgent();
         let ticks = self.window.ticks();
         let (mut clock, mut length) = (0_u32, 0_u64);
         while clock < TICK_CLOCKS {

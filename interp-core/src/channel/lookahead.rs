@@ -163,12 +163,15 @@ impl<const N: usize> Lookahead<N> {
 
     /// Sets the feed of all motions, but of threads.
     pub fn set_feed(&mut self, feed: Feed) {
+        let mut law = false;
         for planned in &mut self.blocks {
             if let Work::Motion(motion) = &mut planned.block.work {
+                let was = smooth::is_smoothed(motion);
                 motion.set_feed(feed);
+                law |= smooth::is_smoothed(motion) != was;
             }
         }
-        self.sweep.hurry();
+        self.sweep.again(law);
     }
 
     /// Takes the next block away.
@@ -244,6 +247,12 @@ impl<const N: usize> Lookahead<N> {
     #[inline]
     pub(super) fn is_planned_with(&self, overrides: Overrides) -> bool {
         overrides == self.overrides && self.is_planned()
+    }
+
+    /// Whether nothing may go on by what was planned, until it is planned anew.
+    #[inline]
+    pub(super) const fn is_urgent(&self) -> bool {
+        self.sweep.is_urgent()
     }
 
     /// Whether all is planned.

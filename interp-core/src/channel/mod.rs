@@ -513,6 +513,8 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         self.line = block.line;
         // a motion is large: it is copied once, from the look-ahead to where it is executed
         match block.work {
+            // by what was planned for something else nothing sets off
+            Work::Motion(_) if self.speed == 0 && ahead.is_urgent() => return Next::Stands,
             // under an S law it begins with the next tick
             Work::Motion(ref motion) if self.window.ticks() > 0 && is_smoothed(motion) => {
                 self.speed = 0;
@@ -580,7 +582,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         }
         let target = if holding { 0 } else { self.hands.cap(active.pace, active.motion.limit) };
         if self.speed == 0 {
-            if target == 0 {
+            if target == 0 || ahead.is_urgent() {
                 self.await_spindle();
                 return None;
             }

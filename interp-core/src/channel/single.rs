@@ -42,7 +42,8 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     pub fn set_single_block(&mut self, on: bool) {
         if on && !self.single.on {
             self.single.passed = self.line;
-            self.memory.borrow_mut().ahead.stand_lines(self.line);
+            let (first, speed) = self.lead_brakes();
+            self.memory.borrow_mut().ahead.stand_lines(self.line, first, speed);
         }
         self.single.on = on;
     }

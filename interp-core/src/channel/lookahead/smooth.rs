@@ -56,14 +56,18 @@ impl<const N: usize> Lookahead<N> {
         !goes_on
     }
 
-    /// Each line is begun from standstill, after the rest of `line`.
-    pub(in crate::channel) fn stand_lines(&mut self, line: u32) {
-        let mut before = line;
-        for planned in &mut self.blocks {
-            planned.stands |= planned.block.line != before;
+    /// Each line is begun from standstill, after the rest of `line`, as far as there is way to brake in: from the start of block
+    /// `first` on where the squared speed `speed` is left there, so much of which that block's way sheds.
+    pub(in crate::channel) fn stand_lines(&mut self, line: u32, first: usize, speed: u64) {
+        let (mut before, mut speed) = (line, speed);
+        for (index, planned) in self.blocks.iter_mut().enumerate() {
+            if index >= first {
+                planned.stands |= planned.block.line != before && speed == 0;
+                speed = speed.saturating_sub(planned.swath.sheds);
+            }
             before = planned.block.line;
         }
-        self.sweep.hurry();
+        self.sweep.again(true);
     }
 
     /// The block pushed last is begun from standstill: it came too late for anything else.

@@ -5,8 +5,9 @@
 //! to stands as it was planned last, for the end that was known then: who keeps that keeps the new plan, too, as every new
 //! block only takes an end away. A block that no sweep has come to counts as not there.
 //!
-//! Where that does not hold all is planned at once: where feeds are set, where another law plans, where lines come to
-//! be begun from standstill.
+//! Where that does not hold a sweep is urgent: where another law plans, where lines come to be begun from standstill. Until it
+//! is over the lead brakes, and what stands stays. That is safe whatever the old plan was for: braking as hard as allowed
+//! meets every joint that is met from there at all.
 
 use crate::block::{Curve, Motion};
 
@@ -34,8 +35,10 @@ pub(super) struct Sweep {
     end: usize,
     /// Blocks whose plan acts: a sweep that had come to them was over.
     settled: usize,
-    /// All is to be planned at once.
-    hurries: bool,
+    /// What was planned is for something else: nothing goes on by it.
+    urgent: bool,
+    /// It is to begin with the last block again.
+    again: bool,
 }
 
 /// A sweep's part of a tick.
@@ -63,21 +66,21 @@ impl Pass {
 
 impl Sweep {
     /// Of no block: all zero.
-    pub(super) const NONE: Self = Self { left: 0, known: 0, end: 0, settled: 0, hurries: false };
+    pub(super) const NONE: Self = Self { left: 0, known: 0, end: 0, settled: 0, urgent: false, again: false };
 
-    /// A tick's part, so much `work`, of the one that is under way or due, of so many blocks. One is due where the overrides have `changed`, too; with
-    /// another law all is planned at once.
+    /// A tick's part, so much `work`, of the one that is under way or due, of so many blocks. One is due where the overrides
+    /// have `changed`, too; with another law it is urgent.
     pub(super) fn set_out(&mut self, blocks: usize, work: u32, changed: bool, law: bool) -> Option<Pass> {
-        let at_once = self.hurries || law;
-        let begins = at_once || self.left == 0;
+        let anew = self.again || law;
+        let begins = anew || self.left == 0;
         if begins {
-            if !at_once && !changed && self.settled >= blocks {
+            if !anew && !changed && self.settled >= blocks {
                 return None;
             }
-            let known = if at_once || changed { 0 } else { self.settled };
-            *self = Self { left: blocks, known, end: blocks, hurries: false, ..*self };
+            let known = if anew || changed { 0 } else { self.settled };
+            *self = Self { left: blocks, known, end: blocks, urgent: self.urgent || law, again: false, ..*self };
         }
-        Some(Pass { work: if at_once { u32::MAX } else { work }, begins })
+        Some(Pass { work, begins })
     }
 
     /// The block to be planned next, if any in this tick.
@@ -105,6 +108,7 @@ impl Sweep {
     pub(super) const fn finish(&mut self) {
         self.left = 0;
         self.settled = self.end;
+        self.urgent = self.again && self.urgent;
     }
 
     /// The nearest block is taken away.
@@ -119,21 +123,27 @@ impl Sweep {
         }
     }
 
-    /// All is to be planned at once.
-    pub(super) const fn hurry(&mut self) {
-        self.hurries = true;
+    /// All is to be planned anew, from the last block on: `urgent`, where nothing may go on by what was planned.
+    pub(super) const fn again(&mut self, urgent: bool) {
+        self.again = true;
+        self.urgent |= urgent;
     }
 
-    /// Plans anew what lies before a block, at once.
+    /// What lies before a block is to be planned anew, urgently, where a sweep has come past it.
     pub(super) const fn again_before(&mut self, block: usize) {
         if self.left > 0 && self.left <= block {
-            self.hurries = true;
+            (self.left, self.known, self.urgent) = (block, 0, true);
         }
+    }
+
+    /// Whether nothing may go on by what was planned.
+    pub(super) const fn is_urgent(&self) -> bool {
+        self.urgent
     }
 
     /// Whether there is nothing to do with so many blocks.
     pub(super) const fn is_over(&self, blocks: usize) -> bool {
-        self.left == 0 && self.settled >= blocks && !self.hurries
+        self.left == 0 && self.settled >= blocks && !self.again
     }
 
     /// The first of so many blocks whose plan does not act yet on what leads up to block `next`.
@@ -174,12 +184,48 @@ mod tests {
         assert!(sweep.is_over(52));
     }
 
+    /// A tick's part of 50 blocks; the last one planned.
+    fn part(sweep: &mut Sweep, law: bool) -> Option<usize> {
+        let mut pass = sweep.set_out(50, WORK, false, law)?;
+        core::iter::from_fn(|| sweep.next(&mut pass)).last()
+    }
+
     #[test]
-    fn what_hurries_is_planned_in_one_tick() {
-        let mut sweep = Sweep::NONE;
-        sweep.hurry();
-        let mut pass = sweep.set_out(64, WORK, false, false).unwrap();
-        while sweep.next(&mut pass).is_some() {}
-        assert!(sweep.is_over(64));
+    fn an_urgent_sweep_comes_to_all_and_is_urgent_to_its_end() {
+        for law in [false, true] {
+            let mut sweep = Sweep { settled: 50, end: 50, ..Sweep::NONE };
+            assert!(sweep.is_over(50) && part(&mut sweep, false).is_none());
+            if !law {
+                sweep.again(true);
+            }
+            assert_eq!(part(&mut sweep, law), Some(38));
+            for last in [26, 14, 2] {
+                assert!(sweep.is_urgent() && !sweep.is_over(50) && !sweep.knew(0));
+                assert_eq!(part(&mut sweep, false), Some(last));
+            }
+            assert_eq!(part(&mut sweep, false), Some(0));
+            assert!(!sweep.is_urgent() && sweep.is_over(50));
+        }
+    }
+
+    #[test]
+    fn what_a_sweep_has_come_past_is_planned_anew_from_there_on() {
+        let mut sweep = Sweep { settled: 50, end: 50, ..Sweep::NONE };
+        sweep.again(false);
+        assert_eq!(part(&mut sweep, false), Some(38));
+        // where it has not come to it needs nothing more
+        sweep.again_before(37);
+        assert!(!sweep.is_urgent());
+        sweep.again_before(45);
+        assert!(sweep.is_urgent());
+        assert_eq!(part(&mut sweep, false), Some(33));
+        // what comes to be urgent meanwhile begins with the last block
+        sweep.again(true);
+        assert_eq!(part(&mut sweep, false), Some(38));
+        while !sweep.is_over(50) {
+            assert!(sweep.is_urgent());
+            part(&mut sweep, false);
+        }
+        assert!(!sweep.is_urgent());
     }
 }
