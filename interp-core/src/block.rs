@@ -25,6 +25,7 @@ use crate::curve::line::Line;
 use crate::curve::method::Method;
 use crate::curve::proportion::Proportion;
 use crate::drive::gearing::Lead;
+use crate::math::to_u32;
 use crate::units::{Axis, Feedrate, Sense};
 use again::Source;
 use heapless::Vec;
@@ -156,6 +157,16 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// The largest speed that is ever asked for: the limit, and so that it takes a tick at least. To begin a block costs
+    /// thousands of instructions, which must not come by the dozen in a tick. A thread goes as the spindle turns.
+    pub(crate) const fn top(&self) -> Speed {
+        if self.length >= self.limit as u64 || matches!(self.feed, Feed::Thread(..)) {
+            self.limit
+        } else {
+            to_u32(self.length)
+        }
+    }
+
     /// Sets the feed, but of a thread.
     pub const fn set_feed(&mut self, feed: Feed) {
         if !matches!(self.feed, Feed::Thread(..)) {

@@ -75,14 +75,55 @@ fn what_72_blocks_planned_bit_by_bit_allow_is_no_slower_than_64_planned_at_once(
     for um in [140, 100, 70, 50, 30, 20, 10] {
         // what is known is enough to brake in: v^2 / 2a = 64 L
         let known = 64.0 * f64::from(um) / 1000.0;
-        let linear = (2.0 * accel * known).sqrt().min(5000.0 / 60.0);
+        // and a block takes a tick at least
+        let most = (5000.0 / 60.0_f64).min(f64::from(um));
+        let linear = (2.0 * accel * known).sqrt().min(most);
         let found = speed(None, um, 120_000 / um);
         assert!(found >= linear * 0.999, "{um} um: {found} mm/s, {linear} wanted");
         // and, under an S law, twice the window of pi/2 a/j besides: v^2 / 2a + 2 v T = 64 L
         let ways = 2.0 * core::f64::consts::FRAC_PI_2 * accel / 50_000.0;
-        let sine = (accel * (((ways * accel).powi(2) + 2.0 * accel * known).sqrt() / accel - ways)).min(5000.0 / 60.0);
+        let sine = (accel * (((ways * accel).powi(2) + 2.0 * accel * known).sqrt() / accel - ways)).min(most);
         let found = speed(Some(SpeedLaw::Sine), um, 120_000 / um);
         assert!(found >= sine * 0.98, "{um} um: {found} mm/s, {sine} wanted");
+    }
+}
+
+/// Lines of a pulse to more than a tick, at the largest speeds and twice the feed: a tick begins two at most, and on the average
+/// one is begun in each while it lasts.
+#[test]
+fn a_tick_begins_two_blocks_at_most() {
+    let lengths = [1, 2, 3, 5, 10, 20, 40, 80, 160_i32];
+    for law in [None, Some(SpeedLaw::Sine)] {
+        for (seed, feed) in
+            (1..=lengths.len()).flat_map(|seed| [500_000_000, 2_500_000_000, 5_000_000_000].map(|f| (seed, f)))
+        {
+            let machine = machine(law);
+            let at = |z_um: i32| Point { x: Length::from_um(0).unwrap(), z: Length::from_um(z_um).unwrap() };
+            let mut builder = Builder::new(&machine, at(0));
+            let pace = Pace::Feed(Feedrate::from_nm_per_min(feed).unwrap());
+            let (mut z, mut lines) = (0, Vec::new());
+            for n in 0..3_000_usize {
+                // all of one length where the seed is even, else a mix
+                z += lengths[if seed % 2 == 0 { seed } else { (n * n + n / 7 * seed) % lengths.len() }];
+                lines
+                    .extend(builder.motion(Path::Line, at(z), pace).motions.iter().map(|motion| Work::Motion(*motion)));
+            }
+            lines.push(Work::End);
+            let mut blocks = lines.into_iter().zip(1..).map(|(work, line)| Block { line, work });
+            let mut channel = Channel::<72>::new(&machine, Lattice::default());
+            channel.set_feed_override(200);
+            assert!(channel.start());
+            let (mut line, mut most) = (0, 0);
+            loop {
+                let report = channel.tick(&mut || blocks.next(), &mut |_: Event| {});
+                if report.state == State::Ended {
+                    break;
+                }
+                most = most.max(report.line - line);
+                line = report.line;
+            }
+            assert!((1..=2).contains(&most), "{law:?}, seed {seed}, {feed} nm/min: {most} in a tick");
+        }
     }
 }
 

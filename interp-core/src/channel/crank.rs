@@ -135,7 +135,7 @@ impl Active {
     pub(super) fn repace(&mut self, overrides: Overrides, crank: &Crank) {
         if matches!(self.motion.feed, Feed::PerTurn(_)) {
             // the override that it is paced at stays none, so it is found anew in every tick
-            self.pace = percent(crank.per_turn(), overrides.feed).min(self.motion.limit);
+            self.pace = percent(crank.per_turn(), overrides.feed).min(self.motion.top());
         } else {
             (self.pace, self.paced_at) = (pace(&self.motion, overrides), overrides);
         }

@@ -94,13 +94,13 @@ impl Overrides {
 
 /// Speed of a motion under overrides; that of one that follows the spindle is not known, and planned with its limit.
 pub fn pace(motion: &Motion, overrides: Overrides) -> Speed {
-    let percent = |speed: Speed, part: u16| percent(speed, part).min(motion.limit);
+    let top = motion.top();
     match motion.feed {
-        Feed::PerTurn(_) | Feed::Thread(..) => motion.limit,
-        Feed::Rapid if overrides.rapid == 100 => motion.limit,
-        Feed::Rapid => percent(motion.limit, overrides.rapid),
-        Feed::PerTick(_) if overrides.feed == Overrides::AT_LIMIT.feed => motion.limit,
-        Feed::PerTick(feed) => percent(feed, overrides.feed),
+        Feed::PerTurn(_) | Feed::Thread(..) => top,
+        Feed::Rapid if overrides.rapid == 100 => top,
+        Feed::Rapid => percent(motion.limit, overrides.rapid).min(top),
+        Feed::PerTick(_) if overrides.feed == Overrides::AT_LIMIT.feed => top,
+        Feed::PerTick(feed) => percent(feed, overrides.feed).min(top),
     }
 }
 

@@ -52,7 +52,7 @@ use fence::Fence;
 use hands::Hands;
 use lead::Lead;
 use lookahead::smooth::is_smoothed;
-use lookahead::sweep::{LESS_WORK, WORK};
+use lookahead::sweep::WORK;
 use lookahead::{Overrides, pace};
 pub use memory::Memory;
 use runner::{Runner, Sink};
@@ -390,7 +390,6 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         if self.memory.borrow().ahead.is_planned_with(planned) {
             return;
         }
-        let work = if self.fence.is_calm(self.tool()) { WORK } else { LESS_WORK };
         let Memory { ahead, trail } = self.memory.borrow_mut();
         let active = match &self.current {
             // what comes follows the motion begun last, wherever the tool is
@@ -404,8 +403,8 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             Current::Nothing | Current::Dwell(_) => None,
         };
         match (self.window.ticks(), self.crank.drive) {
-            (0, _) | (_, Drive::Spindle(_) | Drive::Wheel(_)) => ahead.plan(active, planned, work),
-            (ticks, Drive::Time) => ahead.plan_smooth(active, planned, work, ticks),
+            (0, _) | (_, Drive::Spindle(_) | Drive::Wheel(_)) => ahead.plan(active, planned, WORK),
+            (ticks, Drive::Time) => ahead.plan_smooth(active, planned, WORK, ticks),
         }
     }
 

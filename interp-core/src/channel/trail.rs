@@ -325,5 +325,5 @@ impl Trail {
 
 /// Largest squared speed over the joint of two motions.
 fn joint(earlier: &Motion, later: &Motion) -> u64 {
-    square(later.joint.min(earlier.limit).min(later.limit))
+    square(later.joint.min(earlier.top()).min(later.top()))
 }

@@ -89,7 +89,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let motion = &active.motion;
         let pace = self.crank.pull.map_or(Speed::MAX, |pull| pull.speed);
         let most = root(motion.reachable(to_go.unsigned_abs().min(end), 0));
-        self.speed = motion.accel.min(motion.limit).min(most).min(pace).max(1);
+        self.speed = motion.accel.min(motion.top()).min(most).min(pace).max(1);
         if !self.fence.is_calm(self.tool()) && self.is_fenced(self.crank.back) {
             self.speed = 0;
         }
@@ -152,7 +152,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let end = self.crank.along.room(back);
         let asked = u64::try_from(if back { to_go.wrapping_neg() } else { to_go }).unwrap_or(0).min(end);
         let (mut left, mut exit) = ending(asked);
-        let pace = self.crank.pull.map_or(Speed::MAX, |pull| pull.speed).min(motion.limit);
+        let pace = self.crank.pull.map_or(Speed::MAX, |pull| pull.speed).min(motion.top());
         let stops = asked > 0 && pace > 0 && motion.reachable(left, exit) >= square(self.speed);
         let target = if stops { self.hands.cap(pace, motion.limit) } else { 0 };
         if !stops {
@@ -189,7 +189,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         }
         let Current::Motion(active) = &self.current else { return };
         let joint = if back { joint } else { border(&self.memory.borrow().trail, &active.motion) };
-        self.speed = self.speed.min(joint).min(active.motion.limit);
+        self.speed = self.speed.min(joint).min(active.motion.top());
     }
 }
 

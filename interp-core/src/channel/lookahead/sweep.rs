@@ -11,12 +11,9 @@
 
 use crate::block::{Curve, Motion};
 
-/// What a sweep does in a tick under an S law: a line takes one of it. So a new block acts after six ticks at most where 72 have
-/// to be planned, and behind a sweep that is under way after twelve.
-pub(in crate::channel) const WORK: u32 = 12;
-
-/// The same near a soft limit, where a tick has more to do.
-pub(in crate::channel) const LESS_WORK: u32 = 8;
+/// What a sweep does in a tick under an S law: a line takes one of it. So a new block acts after nine ticks at most where 72
+/// lines have to be planned, and behind a sweep that is under way after eighteen. A tick begins one.
+pub(in crate::channel) const WORK: u32 = 8;
 
 /// How many times as many blocks fit in a tick under the linear law, which has no margins.
 pub(super) const LINEAR: u32 = 3;
@@ -171,7 +168,7 @@ mod tests {
             }
             ticks += 1;
         }
-        assert_eq!((seen, ticks), (50, 5));
+        assert_eq!((seen, ticks), (50, 7));
         assert_eq!(sweep.set_out(50, WORK, false, false), None);
         // three are taken away and five come
         (0..3).for_each(|_| sweep.skip());
@@ -198,8 +195,8 @@ mod tests {
             if !law {
                 sweep.again(true);
             }
-            assert_eq!(part(&mut sweep, law), Some(38));
-            for last in [26, 14, 2] {
+            assert_eq!(part(&mut sweep, law), Some(42));
+            for last in [34, 26, 18, 10, 2] {
                 assert!(sweep.is_urgent() && !sweep.is_over(50) && !sweep.knew(0));
                 assert_eq!(part(&mut sweep, false), Some(last));
             }
@@ -212,16 +209,16 @@ mod tests {
     fn what_a_sweep_has_come_past_is_planned_anew_from_there_on() {
         let mut sweep = Sweep { settled: 50, end: 50, ..Sweep::NONE };
         sweep.again(false);
-        assert_eq!(part(&mut sweep, false), Some(38));
+        assert_eq!(part(&mut sweep, false), Some(42));
         // where it has not come to it needs nothing more
-        sweep.again_before(37);
+        sweep.again_before(41);
         assert!(!sweep.is_urgent());
         sweep.again_before(45);
         assert!(sweep.is_urgent());
-        assert_eq!(part(&mut sweep, false), Some(33));
+        assert_eq!(part(&mut sweep, false), Some(37));
         // what comes to be urgent meanwhile begins with the last block
         sweep.again(true);
-        assert_eq!(part(&mut sweep, false), Some(38));
+        assert_eq!(part(&mut sweep, false), Some(42));
         while !sweep.is_over(50) {
             assert!(sweep.is_urgent());
             part(&mut sweep, false);
