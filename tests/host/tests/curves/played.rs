@@ -15,6 +15,8 @@ pub(crate) struct Played {
     start: (i32, i32),
     steps: Vec<(u64, i32, i32)>,
     ticks: Vec<(i32, i32)>,
+    /// Lengths of the motions, nm.
+    lengths: Vec<f64>,
 }
 
 fn nm(pulse: PulseSize) -> f64 {
@@ -53,7 +55,8 @@ impl Played {
             ticks.push(at);
             assert!(ticks.len() < 3_000_000, "it ends");
         }
-        Self { start, steps, ticks }
+        let lengths = motions.iter().map(|motion| motion.length as f64 / 4096.0).collect();
+        Self { start, steps, ticks, lengths }
     }
 
     pub(crate) fn end(&self) -> Lattice {
@@ -177,5 +180,14 @@ impl Played {
             }
         }
         (behind, ahead)
+    }
+
+    /// What motions shorter than a tick's way, which take a tick all the same, hold back of that feed: coarser pulses, all of
+    /// them together; `accel` in nm a tick squared.
+    pub(crate) fn held_back(&self, machine: &Machine, feed: Feedrate, accel: f64) -> f64 {
+        let way = feed.nm_per_min() as f64 / 60_000.0;
+        // in its own tick, and on both sides of it, where the speed goes down and up again
+        let held = self.lengths.iter().map(|length| (way - length).max(0.0)).map(|less| less + less * less / accel);
+        held.sum::<f64>() / nm(machine.x.pulse).max(nm(machine.z.pulse))
     }
 }
