@@ -521,7 +521,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             Work::Motion(ref motion) => {
                 self.speed = if self.speed == 0 {
                     // planned to be entered at speed, it may come to be begun from a stand: single block, a hold at its joint
-                    root(entry).min(motion.start)
+                    self.hands.cap(root(entry).min(motion.start))
                 } else {
                     // what braking could not shed of a lowered feed goes on; what the machine can't take does not
                     self.speed.min(motion.joint).min(motion.limit)
@@ -578,7 +578,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         if active.paced_at != self.overrides {
             active.repace(self.overrides, &self.crank);
         }
-        let target = if holding { 0 } else { self.hands.cap(active.pace, active.motion.limit) };
+        let target = if holding { 0 } else { self.hands.cap(active.pace) };
         if self.speed == 0 {
             if target == 0 {
                 self.await_spindle();

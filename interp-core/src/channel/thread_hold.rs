@@ -21,7 +21,7 @@ use super::Memory;
 use super::geared::TURNING;
 use super::retract::Retract;
 use super::{Active, Channel, Current, State};
-use crate::block::Curve;
+use crate::block::{Curve, Speed};
 use crate::channel::crank::Crank;
 use crate::channel::follower::Pace;
 use crate::compensation;
@@ -165,6 +165,14 @@ impl ThreadHold {
     /// By how many pulses X is out.
     pub(super) const fn out(&self) -> i32 {
         self.retract.pulses()
+    }
+
+    /// Speed of X on its way out or back: nm a tick, 12 fraction bits.
+    pub(super) fn speed(&self) -> Speed {
+        let numerator = self.pulses.0.numerator().into();
+        let nm =
+            self.retract.speed().unsigned_abs().saturating_mul(numerator) >> (compensation::FRACTION - FRACTION_BITS);
+        to_u32(nm.checked_div(self.pulses.0.denominator().into()).unwrap_or(0))
     }
 
     /// Pulses that X is pulled out by.
