@@ -30,7 +30,7 @@ use core::borrow::BorrowMut;
 const BLOCKS: usize = 12;
 
 /// Ticks that are added to those in which the hands come to a stand: the one that comes, and what division cuts off.
-const TICKS: u64 = 3;
+const TICKS: u32 = 3;
 
 /// All of the path's speed.
 const WHOLE: u32 = 1 << PART_BITS;
@@ -44,7 +44,7 @@ struct Parts {
 }
 
 impl Parts {
-    const NONE: Self = Self { x: 0, z: 0, limit: 0 };
+    /// All of it.
     const UNKNOWN: Self = Self { x: WHOLE, z: WHOLE, limit: Speed::MAX };
 
     fn and(self, other: Self) -> Self {
@@ -64,7 +64,8 @@ pub(super) struct Path {
 
 impl Path {
     fn takes(&self, part: u32) -> Speed {
-        to_u32(u64::from(self.speed).wrapping_mul(part.into()).wrapping_add(u64::from(WHOLE - 1)) >> PART_BITS)
+        let taken = u64::from(self.speed).wrapping_mul(part.into()).wrapping_add(u64::from(WHOLE - 1));
+        to_u32(taken >> PART_BITS)
     }
 }
 
@@ -85,15 +86,17 @@ impl AxisHand {
         to_u32(left.checked_div(part.into()).unwrap_or(ALL.into()))
     }
 
-    /// Ticks in which it comes to a stand.
-    fn ticks(&self) -> u64 {
-        self.hand.advance().unsigned_abs().checked_div(self.share().into()).unwrap_or(0)
+    /// Ticks in which it comes to a stand, at most 2^16.
+    fn ticks(&self) -> u32 {
+        let advance = to_u32(self.hand.advance().unsigned_abs());
+        advance.checked_div(self.share()).unwrap_or(0).min(1 << 16)
     }
 
     /// Its part of a motion that leads the axis so many pulses far.
     fn part(&self, pulses: i32, motion: &Motion) -> u32 {
-        let nm = u64::from(pulses.unsigned_abs()).saturating_mul(self.pulse.numerator().into());
-        ratio(nm.saturating_mul(1 << FRACTION_BITS), motion.length.saturating_mul(self.pulse.denominator().into()))
+        let nm = u64::from(pulses.unsigned_abs()).wrapping_mul(self.pulse.numerator().into());
+        // 2^32 nm at most, with 12 bits of both
+        ratio(nm.wrapping_shl(FRACTION_BITS), motion.length.wrapping_mul(self.pulse.denominator().into()))
     }
 }
 
@@ -139,50 +142,54 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let (time, wheel) = (!self.crank.turns, matches!(self.crank.drive, Drive::Wheel(_)));
         let yields = !self.crank.in_thread && (time || wheel);
         let most = self.speed.max(self.window.longest());
-        let limit = match &self.current {
-            Current::Motion(active) if !yields => active.motion.limit.max(most),
-            _ => most,
-        };
-        let faster = u64::from(limit).saturating_add(self.hands.accel().into());
-        let ticks = self.hands.x.ticks().max(self.hands.z.ticks()).saturating_add(TICKS);
-        let parts = self.parts_on(faster.saturating_mul(ticks).saturating_add(self.window.owed()));
-        Some(Path { parts, speed: if yields { most } else { parts.limit.max(most) }, retract: thread.speed() })
+        let mut fastest = most;
+        if let (Current::Motion(active), false) = (&self.current, yields) {
+            fastest = most.max(active.motion.limit);
+        }
+        let ticks = self.hands.x.ticks().max(self.hands.z.ticks()).wrapping_add(TICKS);
+        // below 2^33 2^17, and what a window holds
+        let way = u64::from(fastest).wrapping_add(self.hands.accel().into()).wrapping_mul(ticks.into());
+        let parts = self.parts_on(way.wrapping_add(self.window.owed()));
+        Some(Path { parts, speed: if yields { most } else { most.max(parts.limit) }, retract: thread.speed() })
     }
 
     /// The parts that X and Z have on so much of the way.
     fn parts_on(&self, way: u64) -> Parts {
-        let (mut left, mut parts) = (way, Parts::NONE);
+        let (mut left, mut parts) = (way, Parts { x: 0, z: 0, limit: 0 });
         let Memory { ahead, trail } = self.memory.borrow();
         let back = self.crank.back || matches!(self.crank.thread.stage(), ThreadStage::Returning);
-        let thread = self.crank.in_thread;
         if let Current::Motion(active) = &self.current {
-            let (done, room, motion) = (active.done, self.room(back), &active.motion);
-            let (from, until) = if back { (done.saturating_sub(way), done) } else { (done, done.saturating_add(way)) };
-            parts = self.hands.parts(motion, from, until);
+            let (done, room) = (active.done, self.room(back));
+            let from = if back { done.saturating_sub(way) } else { done };
+            parts = self.hands.parts(&active.motion, from, if back { done } else { done.wrapping_add(way) });
             if left <= room {
                 return parts;
             }
             left = left.wrapping_sub(room);
         }
         if back || trail.is_behind() {
-            return parts.and(Parts::UNKNOWN);
+            return Parts::UNKNOWN;
         }
-        let mut blocks = 0_usize;
-        for block in ahead.blocks().take(BLOCKS) {
-            blocks = blocks.wrapping_add(1);
+        let mut index = 0_usize;
+        while let Some((block, _)) = ahead.swath(index) {
             // what is no motion may be over at once
-            let Some(motion) = as_motion(block) else { continue };
-            if motion.feed.is_thread() != thread {
-                // it stands there
-                return parts;
+            if let Some(motion) = as_motion(block) {
+                if motion.feed.is_thread() != self.crank.in_thread {
+                    // it stands there
+                    return parts;
+                }
+                parts = parts.and(self.hands.parts(motion, 0, left));
+                if left <= motion.length {
+                    return parts;
+                }
+                left = left.wrapping_sub(motion.length);
             }
-            parts = parts.and(self.hands.parts(motion, 0, left));
-            if left <= motion.length {
-                return parts;
+            index = index.wrapping_add(1);
+            if index > BLOCKS {
+                return Parts::UNKNOWN;
             }
-            left = left.wrapping_sub(motion.length);
         }
-        if self.complete && blocks == ahead.len() { parts } else { parts.and(Parts::UNKNOWN) }
+        if self.complete { parts } else { Parts::UNKNOWN }
     }
 }
 
