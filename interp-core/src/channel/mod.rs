@@ -21,6 +21,7 @@ mod lead;
 pub mod lookahead;
 mod margins;
 mod memory;
+mod report;
 mod retract;
 mod runner;
 mod settings;
@@ -36,7 +37,7 @@ mod window;
 use crate::block::{Block, Motion, Output, Speed, Work};
 use crate::compensation::Compensation;
 use crate::config::{Machine, TICK_CLOCKS};
-use crate::drive::{BackEnd, Drive, Driven};
+use crate::drive::{BackEnd, Drive};
 use crate::governor::Advance;
 use crate::governor::square;
 use crate::math::root;
@@ -55,6 +56,7 @@ use lookahead::smooth::is_smoothed;
 use lookahead::sweep::{LESS_WORK, WORK};
 use lookahead::{Overrides, pace};
 pub use memory::Memory;
+pub use report::{Report, State};
 use runner::{Runner, Sink};
 use single::Single;
 use superposed::Superposed;
@@ -67,49 +69,6 @@ const FILL_PER_TICK: usize = 16;
 /// Ticks without a new block after which a cycle begins although neither the look-ahead is full nor the program's end
 /// known: the sender waits. Where there is no block at all the channel is idle again.
 const FILL_PATIENCE: u32 = 50;
-
-/// What the channel is doing.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum State {
-    /// Nothing; waits for cycle start.
-    Idle,
-    /// Cycle start was given; the look-ahead fills. Also where a program that arrives bit by bit has run dry, for as
-    /// long as more may be on its way; then the channel is idle.
-    Filling,
-    /// Executes blocks.
-    Running,
-    /// Feed hold: brakes or stands.
-    Holding,
-    /// Reset: brakes, then forgets all blocks and is idle.
-    Resetting,
-    /// A programmed stop: waits for cycle start.
-    Stopped,
-    /// The program is over.
-    Ended,
-}
-
-/// What a tick did besides its events.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Report {
-    /// What the channel is doing after the tick.
-    pub state: State,
-    /// The tick belongs to a cycle (counted in the train's hash).
-    pub in_cycle: bool,
-    /// An output that the program set at the end of this tick.
-    pub output: Option<Output>,
-    /// Line of the block being executed, 0 for none.
-    pub line: u32,
-    /// Speed along the path at the tick's end.
-    pub speed: Speed,
-    /// What a drive other than time did.
-    pub driven: Driven,
-}
-
-impl Report {
-    /// Of a channel that does nothing.
-    pub const IDLE: Self =
-        Self { state: State::Idle, in_cycle: false, output: None, line: 0, speed: 0, driven: Driven::NONE };
-}
 
 /// A motion being executed.
 #[derive(Clone, Debug)]
