@@ -4,6 +4,7 @@
 //! are taken only at a tick's start and only as many as fit, so as long as the source keeps up the train does not
 //! depend on when they arrived; should the source lag, the plan ends in standstill and the lag is counted.
 
+mod active;
 mod along;
 #[cfg(feature = "methods")]
 mod classic;
@@ -34,7 +35,7 @@ mod walk;
 mod wheeled;
 mod window;
 
-use crate::block::{Block, Motion, Output, Speed, Work};
+use crate::block::{Block, Output, Speed, Work};
 use crate::compensation::Compensation;
 use crate::config::{Machine, TICK_CLOCKS};
 use crate::drive::{BackEnd, Drive};
@@ -45,19 +46,19 @@ use crate::shaper::Shaper;
 use crate::times::Stretch;
 use crate::train::Train;
 use crate::units::Lattice;
+use active::{Active, Current};
 use core::borrow::BorrowMut;
 use crank::Crank;
 pub use crank::Pull;
-use cruise::Cruise;
 use fence::Fence;
 use hands::Hands;
 use lead::Lead;
 use lookahead::smooth::is_smoothed;
 use lookahead::sweep::{LESS_WORK, WORK};
-use lookahead::{Overrides, pace};
+use lookahead::Overrides;
 pub use memory::Memory;
 pub use report::{Report, State};
-use runner::{Runner, Sink};
+use runner::Sink;
 use single::Single;
 use superposed::Superposed;
 use trail::maker::Maker;
@@ -69,50 +70,6 @@ const FILL_PER_TICK: usize = 16;
 /// Ticks without a new block after which a cycle begins although neither the look-ahead is full nor the program's end
 /// known: the sender waits. Where there is no block at all the channel is idle again.
 const FILL_PATIENCE: u32 = 50;
-
-/// A motion being executed.
-#[derive(Clone, Debug)]
-struct Active {
-    motion: Motion,
-    /// Where it begins.
-    from: Lattice,
-    runner: Runner,
-    /// Length covered.
-    done: u64,
-    /// Its speed under the overrides `paced_at`.
-    pace: Speed,
-    paced_at: Overrides,
-    cruise: Cruise,
-    /// It goes by the linear law, whatever its feed is now: a spindle has paced it while it moved.
-    linear: bool,
-}
-
-impl Active {
-    /// At the start of `motion`.
-    #[inline(always)]
-    fn new(motion: &Motion, overrides: Overrides, from: Lattice) -> Self {
-        Self {
-            from,
-            linear: !is_smoothed(motion),
-            runner: Runner::new(&motion.curve, motion.length),
-            done: 0,
-            pace: pace(motion, overrides),
-            paced_at: overrides,
-            cruise: Cruise::new(),
-            motion: *motion,
-        }
-    }
-}
-
-/// What is being executed.
-#[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "one exists a channel, and there is no allocation")]
-enum Current {
-    Nothing,
-    Motion(Active),
-    /// Clocks left.
-    Dwell(u64),
-}
 
 /// What became of the block that came next.
 enum Next {
