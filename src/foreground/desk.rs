@@ -74,14 +74,12 @@ pub(super) struct Seen {
     pub(super) place: Lattice,
     /// And at the end of the one before.
     pub(super) before: Lattice,
-    /// Where the program was at the end of the last tick in which anything moved.
-    pub(super) led: Lattice,
 }
 
 impl Seen {
     pub(super) const NOWHERE: Self = {
         let at = Lattice { x: 0, z: 0 };
-        Self { place: at, before: at, led: at }
+        Self { place: at, before: at }
     };
 }
 

@@ -90,7 +90,6 @@ impl Foreground<'_> {
             self.channel.set_offset(offset);
             self.channel.stand_at(axis, place);
             self.recount(axis, by);
-            self.seen.led = self.led();
             *self.desk.verified.of_mut(axis) = true;
             self.desk.closed_loop.forget(axis);
             self.set_limits();

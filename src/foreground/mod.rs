@@ -117,8 +117,9 @@ impl<'q> Foreground<'q> {
             self.forget();
         }
         self.operate();
+        let from = self.channel.position();
         let report = self.run(out);
-        self.oversee(&report);
+        self.oversee(&report, from);
         if let Some(trouble) = self.channel.fault() {
             self.raise(Alarm::of_trouble(trouble));
         }

@@ -224,9 +224,9 @@ impl Foreground<'_> {
         }
     }
 
-    /// After the channel's tick.
+    /// After the channel's tick, that the program began at `from`.
     #[inline]
-    pub(super) fn oversee(&mut self, report: &Report) {
+    pub(super) fn oversee(&mut self, report: &Report, from: Lattice) {
         self.desk.trouble = report.driven.trouble;
         let place = self.place();
         if self.attended || report.driven.dropped != 0 || report.driven.back_end.is_some() {
@@ -235,30 +235,21 @@ impl Foreground<'_> {
         if let Some((axis, plus)) = self.channel.met_fence() {
             self.desk.refuse(Refusal::Limit(axis, plus));
         }
-        let before = self.seen.place;
-        if place != before || self.attended {
-            self.note_way();
-        }
-        (self.seen.before, self.seen.place) = (before, place);
+        self.note_way(from);
+        (self.seen.before, self.seen.place) = (self.seen.place, place);
     }
 
-    /// Notes from which side the program's place comes: that is what shoulders stop, and not what hands lead beside it.
-    fn note_way(&mut self) {
-        let (led, before) = (self.led(), self.seen.led);
-        let came = &mut self.desk.power.came;
-        if led.x != before.x {
-            came.x = Some(led.x > before.x);
+    /// Notes from which side the program's place comes: that is what shoulders stop, and not what hands lead beside it. Only
+    /// the way within a tick counts, as coordinates are set anew between ticks.
+    #[inline]
+    fn note_way(&mut self, from: Lattice) {
+        let (at, came) = (self.channel.position(), &mut self.desk.power.came);
+        if at.x != from.x {
+            came.x = Some(at.x > from.x);
         }
-        if led.z != before.z {
-            came.z = Some(led.z > before.z);
+        if at.z != from.z {
+            came.z = Some(at.z > from.z);
         }
-        self.seen.led = led;
-    }
-
-    /// Where the program is, however its coordinates count.
-    pub(super) const fn led(&self) -> Lattice {
-        let (at, datum) = (self.channel.position(), self.desk.datum);
-        Lattice { x: at.x.wrapping_add(datum.x), z: at.z.wrapping_add(datum.z) }
     }
 
     /// What wheels and the machine's own paths have come to, and switches.

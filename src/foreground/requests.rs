@@ -222,7 +222,6 @@ impl Foreground<'_> {
             // what was lost meanwhile is lost; what was found was not the axes' place
             desk.verified.x &= locked.verified.x;
             desk.verified.z &= locked.verified.z;
-            self.seen.led = self.led();
         }
     }
 

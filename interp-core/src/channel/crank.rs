@@ -299,7 +299,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         });
         if other && !self.memory.borrow().trail.is_behind() && matches!(self.state, State::Running) {
             self.crank.ungear();
-            if let super::Next::Output(output) = self.next_block() {
+            if let super::run::Next::Output(output) = self.next_block() {
                 return Some(output);
             }
         }

@@ -47,6 +47,11 @@ impl Follower {
         self.place
     }
 
+    /// By how much it moved in the last tick, pulses with [`FRACTION`] fraction bits.
+    pub const fn speed(&self) -> i64 {
+        self.speed
+    }
+
     /// The nearest whole pulse, half upward.
     #[expect(clippy::cast_possible_truncation, reason = "places are below 2^30 pulses")]
     pub const fn pulses(&self) -> i32 {

@@ -7,11 +7,10 @@
 //! The place is held in nanometres with 12 fraction bits, not in pulses: a detent is worth an exact part of a micrometre
 //! whatever the pulse is, the remainder is carried, and as many counts back lead to the very same pulse.
 
-use crate::block::Speed;
 use crate::config::FRACTION_BITS;
 use crate::drive::follower::{Bounds, Follower};
 use crate::drive::wheel::{Click, Wheel};
-use crate::math::{to_i32, to_u32};
+use crate::math::to_i32;
 use crate::units::PulseSize;
 
 /// Room to either side of a place, nm with 12 fraction bits: the first at most 0, the second at least 0.
@@ -185,15 +184,6 @@ impl Default for Hand {
     fn default() -> Self {
         Self::new()
     }
-}
-
-/// What is left of an axis's largest speed beside a program that moved it by `pulses` in the last tick, at no more than the
-/// path's speed, and may have gained one tick's acceleration since.
-pub(super) fn beside(speed: u32, (pulses, path): (i32, Speed), accel: u32, pulse: PulseSize) -> u32 {
-    let pulses = u64::from(pulses.unsigned_abs()).saturating_add(1);
-    let nm = pulses.saturating_mul(u64::from(pulse.numerator()) << FRACTION_BITS);
-    let taken = nm.checked_div(u64::from(pulse.denominator())).unwrap_or(0).min(path.into());
-    speed.saturating_sub(to_u32(taken.saturating_add(u64::from(accel))))
 }
 
 #[cfg(test)]

@@ -8,27 +8,29 @@
 //! has all. So their sum keeps the axis's limit, whatever either does.
 //!
 //! **Speed.** The hand gets what the program leaves of the axis's largest speed; the program may gain speed only in so far as
-//! the hands leave room. Each keeps clear of what the other may gain in a tick, so the sum stays within the limit.
+//! the hands leave room. So the sum stays within the limit: see [`beside`].
 //!
 //! **Room.** A hand stops where its axis meets the [fence](super::fence), beside a path that may need a part of the room, and
 //! where the offset meets its bound. It approaches either with its share, so that a program that begins finds it able to stop.
 //!
 //! [`Machine::with_hands`]: crate::config::Machine::with_hands
 
+mod beside;
+
 use super::Memory;
-use super::hand::{ENDLESS, Hand, Room, beside};
-use super::{Channel, Current, State};
+use super::hand::{ENDLESS, Hand, Room};
+use super::{Channel, Current};
 use crate::block::Speed;
 use crate::config::{AxisLimits, FRACTION_BITS, Machine};
-use crate::drive::ThreadStage;
 use crate::drive::follower::Bounds;
 use crate::drive::wheel::Click;
 use crate::math::to_u32;
 use crate::units::{Axis, Lattice, PulseSize};
+use beside::Path;
 use core::borrow::BorrowMut;
 
-/// All of a program's speed.
-const ALL: u32 = 1 << 16;
+/// Any speed of a program.
+const ALL: Speed = Speed::MAX;
 
 /// A hand with its axis's limits.
 #[derive(Copy, Clone, Debug)]
@@ -46,8 +48,6 @@ struct AxisHand {
     bounds: (i32, i32),
     /// Room in the tick that comes, where it is known already.
     room: Option<Room>,
-    /// The program's position at the last tick.
-    at: i32,
 }
 
 /// No bounds.
@@ -65,18 +65,7 @@ impl AxisHand {
             folds: false,
             bounds: UNBOUND,
             room: None,
-            at: 0,
         }
-    }
-
-    /// What it may do in a tick, after one in which the program moved the axis by so many pulses, at no more than a speed; `None`
-    /// where it stands.
-    fn bounds(&self, moved: Option<(i32, Speed)>) -> Bounds {
-        let (speed, accel) = match moved {
-            None => (self.speed, self.accel.saturating_add(self.by_hand)),
-            Some(moved) => (beside(self.speed, moved, self.accel, self.pulse), self.by_hand),
-        };
-        Bounds { speed: speed.min(self.pace), accel: accel.max(1) }
     }
 
     /// What it has of the acceleration beside a program; all, where none was kept for it.
@@ -107,13 +96,6 @@ impl AxisHand {
         };
         to_u32(pulses.min(u64::from(u32::MAX >> 2))).cast_signed().saturating_add(1)
     }
-
-    /// The part of a program's speed that is left beside it, 16 fraction bits.
-    fn leaves(&self) -> u32 {
-        let taken = self.hand.advance().unsigned_abs().saturating_add(u64::from(self.by_hand));
-        let left = u64::from(self.speed).saturating_sub(taken) << 16;
-        to_u32(left.checked_div(u64::from(self.speed)).unwrap_or(0))
-    }
 }
 
 /// The hands of a lathe.
@@ -122,8 +104,8 @@ pub(super) struct Hands {
     x: AxisHand,
     z: AxisHand,
     offset: Lattice,
-    /// The part of its speed that the program may have, 16 fraction bits.
-    left: u32,
+    /// The speed that the program may gain.
+    left: Speed,
     /// A hand was touched since all were seen to rest.
     touched: bool,
     /// Pulses of X and Z to be made in the next tick that nobody counts.
@@ -206,47 +188,24 @@ impl Hands {
         !self.touched || self.x.hand.is_at_rest() && self.z.hand.is_at_rest()
     }
 
-    /// A speed of the program, of which `limit` is the largest, as far as the hands leave room for it.
+    /// A speed of the program, as far as the hands leave room for it.
     #[inline]
-    pub(super) fn cap(&self, target: Speed, limit: Speed) -> Speed {
-        if self.left == ALL { target } else { self.cap_slowly(target, limit) }
+    pub(super) const fn cap(&self, target: Speed) -> Speed {
+        if target < self.left { target } else { self.left }
     }
 
+    /// Moves for a tick beside a program that may move. The pulses of X and Z.
     #[cold]
-    fn cap_slowly(&self, target: Speed, limit: Speed) -> Speed {
-        target.min(to_u32(u64::from(limit).wrapping_mul(u64::from(self.left)) >> 16))
-    }
-
-    /// Moves for a tick beside a program that has got to `position` and has a speed, if it may move. The pulses of X and Z.
-    #[cold]
-    fn tick(&mut self, path: Option<Speed>, position: Lattice) -> (i32, i32) {
-        let moved = |axis: &AxisHand, at: i32| path.map(|path| (at.wrapping_sub(axis.at), path));
-        let (x, z) = (self.x.bounds(moved(&self.x, position.x)), self.z.bounds(moved(&self.z, position.z)));
+    fn tick(&mut self, path: Option<Path>) -> (i32, i32) {
+        let (x, z) = self.bounds(path);
         let pulses = (self.x.tick(x), self.z.tick(z));
         let rest = self.at_rest();
-        self.left = if rest { ALL } else { self.x.leaves().min(self.z.leaves()) };
+        self.left = path.filter(|_| !rest).map_or(ALL, |path| self.leave(path));
         pulses
     }
 }
 
 impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
-    /// Whether the program may move in the tick to come.
-    const fn may_move(&self) -> bool {
-        self.speed > 0 || matches!(self.state, State::Running | State::Filling)
-    }
-
-    /// More than the program may lead an axis at in the tick to come, but for the acceleration; `None` where it stands.
-    const fn path_speed(&self) -> Option<Speed> {
-        if !self.may_move() {
-            None
-        } else if self.crank.in_thread || !matches!(self.crank.thread.stage(), ThreadStage::None) {
-            // X has a way of its own out of a thread
-            Some(Speed::MAX)
-        } else {
-            Some(self.speed)
-        }
-    }
-
     /// The tick of the hands: pulses of X and Z to be added to the program's, which pulls X out of a thread by `retract`.
     #[inline]
     pub(super) fn by_hand(&mut self, retract: i32) -> (i32, i32) {
@@ -257,7 +216,6 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
                 self.hands.left = ALL;
                 (self.hands.x.room, self.hands.z.room) = (None, None);
             }
-            (self.hands.x.at, self.hands.z.at) = (self.position.x, self.position.z);
             return (x, z);
         }
         let by_hand = self.move_by_hand(retract);
@@ -266,7 +224,6 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
 
     #[cold]
     fn move_by_hand(&mut self, retract: i32) -> (i32, i32) {
-        let path = if retract == 0 { self.path_speed() } else { Some(Speed::MAX) };
         for axis in [Axis::X, Axis::Z] {
             let hand = self.hands.of(axis);
             if hand.room.is_none() && !hand.hand.is_at_rest() {
@@ -274,9 +231,8 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             }
         }
         // the retract is the program's, too
-        let away = self.position.x.wrapping_sub(self.hands.x.at).saturating_abs();
-        self.hands.x.at = self.position.x.wrapping_sub(away).wrapping_sub(retract.saturating_abs());
-        let (x, z) = self.hands.tick(path, self.position);
+        let path = self.path(retract != 0);
+        let (x, z) = self.hands.tick(path);
         let into = |folds: bool, position: &mut i32, offset: &mut i32, pulses: i32| {
             let place = if folds { position } else { offset };
             *place = place.wrapping_add(pulses);
@@ -289,7 +245,6 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         }
         into(hands.x.folds, &mut self.position.x, &mut hands.offset.x, x);
         into(hands.z.folds, &mut self.position.z, &mut hands.offset.z, z);
-        (hands.x.at, hands.z.at) = (self.position.x, self.position.z);
         (x, z)
     }
 
@@ -321,19 +276,15 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
     /// to either side (at most 0, at least 0), besides fence and bounds. Returns the counts dropped, and whether there was no room
     /// at all for them.
     pub fn turn_hand(&mut self, axis: Axis, click: Click, counts: i16, ends: (i32, i32)) -> (i32, bool) {
-        let path = self.path_speed();
-        let position = match axis {
-            Axis::X => self.position.x,
-            Axis::Z => self.position.z,
-        };
         let hand = self.hands.of(axis);
         if counts == 0 && hand.hand.is_at_rest() {
             return (0, false);
         }
         let ((least, most), room) = self.find_room(axis, ends);
+        self.hands.of(axis).pace = Speed::MAX;
+        let (x, z) = self.hands.bounds(self.path(false));
+        let bounds = if matches!(axis, Axis::X) { x } else { z };
         let hand = self.hands.of(axis);
-        hand.pace = Speed::MAX;
-        let bounds = hand.bounds(path.map(|path| (position.wrapping_sub(hand.at), path)));
         let dropped = hand.hand.turn(click, counts, bounds, room);
         (dropped, dropped < 0 && least == 0 || dropped > 0 && most == 0)
     }

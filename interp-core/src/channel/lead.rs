@@ -190,7 +190,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             if lead.paced_at != self.overrides {
                 (lead.pace, lead.paced_at) = (pace(motion, self.overrides), self.overrides);
             }
-            let target = if runs { self.hands.cap(lead.pace, motion.limit).min(lead.behind.cap()) } else { 0 };
+            let target = if runs { self.hands.cap(lead.pace).min(lead.behind.cap()) } else { 0 };
             if lead.speed == 0 {
                 if target == 0 {
                     break;

@@ -4,6 +4,7 @@
 //! are taken only at a tick's start and only as many as fit, so as long as the source keeps up the train does not
 //! depend on when they arrived; should the source lag, the plan ends in standstill and the lag is counted.
 
+mod active;
 mod along;
 #[cfg(feature = "methods")]
 mod classic;
@@ -11,6 +12,7 @@ mod classic;
 mod conic;
 mod crank;
 mod cruise;
+mod cycle;
 mod fence;
 pub mod follower;
 mod geared;
@@ -21,149 +23,41 @@ mod lead;
 pub mod lookahead;
 mod margins;
 mod memory;
+mod report;
 mod retract;
+mod run;
 mod runner;
 mod settings;
 mod single;
 pub mod superposed;
 mod swath;
+mod take;
 mod thread_hold;
 mod trail;
 mod walk;
 mod wheeled;
 mod window;
 
-use crate::block::{Block, Motion, Output, Speed, Work};
+use crate::block::{Block, Speed};
 use crate::compensation::Compensation;
-use crate::config::{Machine, TICK_CLOCKS};
-use crate::drive::{BackEnd, Drive, Driven};
-use crate::governor::Advance;
-use crate::governor::square;
-use crate::math::root;
+use crate::config::Machine;
 use crate::shaper::Shaper;
-use crate::times::Stretch;
 use crate::train::Train;
 use crate::units::Lattice;
+use active::{Active, Current};
 use core::borrow::BorrowMut;
 use crank::Crank;
 pub use crank::Pull;
-use cruise::Cruise;
 use fence::Fence;
 use hands::Hands;
 use lead::Lead;
-use lookahead::smooth::is_smoothed;
-use lookahead::sweep::WORK;
-use lookahead::{Overrides, pace};
+use lookahead::Overrides;
 pub use memory::Memory;
-use runner::{Runner, Sink};
+pub use report::{Report, State};
 use single::Single;
 use superposed::Superposed;
 use trail::maker::Maker;
 use window::Window;
-
-/// Blocks taken in one tick while a cycle fills the look-ahead.
-const FILL_PER_TICK: usize = 16;
-
-/// Ticks without a new block after which a cycle begins although neither the look-ahead is full nor the program's end
-/// known: the sender waits. Where there is no block at all the channel is idle again.
-const FILL_PATIENCE: u32 = 50;
-
-/// What the channel is doing.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum State {
-    /// Nothing; waits for cycle start.
-    Idle,
-    /// Cycle start was given; the look-ahead fills. Also where a program that arrives bit by bit has run dry, for as
-    /// long as more may be on its way; then the channel is idle.
-    Filling,
-    /// Executes blocks.
-    Running,
-    /// Feed hold: brakes or stands.
-    Holding,
-    /// Reset: brakes, then forgets all blocks and is idle.
-    Resetting,
-    /// A programmed stop: waits for cycle start.
-    Stopped,
-    /// The program is over.
-    Ended,
-}
-
-/// What a tick did besides its events.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Report {
-    /// What the channel is doing after the tick.
-    pub state: State,
-    /// The tick belongs to a cycle (counted in the train's hash).
-    pub in_cycle: bool,
-    /// An output that the program set at the end of this tick.
-    pub output: Option<Output>,
-    /// Line of the block being executed, 0 for none.
-    pub line: u32,
-    /// Speed along the path at the tick's end.
-    pub speed: Speed,
-    /// What a drive other than time did.
-    pub driven: Driven,
-}
-
-impl Report {
-    /// Of a channel that does nothing.
-    pub const IDLE: Self =
-        Self { state: State::Idle, in_cycle: false, output: None, line: 0, speed: 0, driven: Driven::NONE };
-}
-
-/// A motion being executed.
-#[derive(Clone, Debug)]
-struct Active {
-    motion: Motion,
-    /// Where it begins.
-    from: Lattice,
-    runner: Runner,
-    /// Length covered.
-    done: u64,
-    /// Its speed under the overrides `paced_at`.
-    pace: Speed,
-    paced_at: Overrides,
-    cruise: Cruise,
-    /// It goes by the linear law, whatever its feed is now: a spindle has paced it while it moved.
-    linear: bool,
-}
-
-impl Active {
-    /// At the start of `motion`.
-    #[inline(always)]
-    fn new(motion: &Motion, overrides: Overrides, from: Lattice) -> Self {
-        Self {
-            from,
-            linear: !is_smoothed(motion),
-            runner: Runner::new(&motion.curve, motion.length),
-            done: 0,
-            pace: pace(motion, overrides),
-            paced_at: overrides,
-            cruise: Cruise::new(),
-            motion: *motion,
-        }
-    }
-}
-
-/// What is being executed.
-#[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "one exists a channel, and there is no allocation")]
-enum Current {
-    Nothing,
-    Motion(Active),
-    /// Clocks left.
-    Dwell(u64),
-}
-
-/// What became of the block that came next.
-enum Next {
-    /// Something was begun, or is over already.
-    Goes,
-    /// Nothing comes.
-    Stands,
-    /// An output changes at the end of this tick.
-    Output(Output),
-}
 
 /// One lathe's interpolator, with a look-ahead of `N` blocks, and with a memory of its own or one that it is lent.
 // what each tick needs stands before the memory, whose size would put it out of an instruction's reach
@@ -240,69 +134,6 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         }
     }
 
-    /// Starts a cycle, or goes on after a hold or a programmed stop. False where there is nothing to start.
-    pub fn start(&mut self) -> bool {
-        match self.state {
-            State::Idle | State::Ended => {
-                self.complete = false;
-                self.closed = false;
-                // another path's motions are no way back
-                self.memory.borrow_mut().trail.clear(BackEnd::Start);
-                self.waited = 0;
-                self.single.pass_all();
-                self.state = State::Filling;
-                true
-            }
-            State::Holding | State::Stopped => {
-                self.pass_single();
-                self.crank.thread.go_on();
-                self.state = State::Running;
-                true
-            }
-            State::Filling | State::Running | State::Resetting => false,
-        }
-    }
-
-    /// Brakes along the path to standstill, then forgets all blocks. The position stays true.
-    pub fn reset(&mut self) {
-        self.state = match self.state {
-            State::Idle | State::Ended => State::Idle,
-            State::Filling | State::Running | State::Holding | State::Stopped | State::Resetting => State::Resetting,
-        };
-    }
-
-    /// Stops at once, from any speed, and forgets all blocks: for an emergency. The position is that of the last pulse
-    /// planned; where the tool is nobody knows.
-    pub fn abandon(&mut self) {
-        self.speed = 0;
-        // a pulse that is owed is not made any more: the place is that of the pins
-        let owed = self.superposed.abandon();
-        self.position.x = self.position.x.wrapping_sub(owed.0);
-        self.position.z = self.position.z.wrapping_sub(owed.1);
-        self.compensation.stop(self.tool());
-        self.hands.abandon();
-        self.forget();
-    }
-
-    /// Forgets all blocks of a path that stands. What the hands and the compensation do goes on. False, and nothing changes,
-    /// while the path moves.
-    pub fn drop_path(&mut self) -> bool {
-        let stands = self.speed == 0 && !self.crank.thread.is_busy();
-        if stands {
-            self.forget();
-        }
-        stands
-    }
-
-    /// Feed hold: brakes along the path to standstill, or does not begin to move. False where nothing runs.
-    pub fn hold(&mut self) -> bool {
-        let runs = matches!(self.state, State::Running | State::Filling);
-        if runs {
-            self.state = State::Holding;
-        }
-        runs
-    }
-
     /// Makes one tick: takes blocks from `source`, gives events to `out`.
     pub fn tick(&mut self, source: &mut impl FnMut() -> Option<Block>, out: &mut impl Train) -> Report {
         let in_cycle = matches!(self.state, State::Running | State::Holding | State::Stopped | State::Resetting);
@@ -361,268 +192,9 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         }
     }
 
-    /// Takes blocks and plans.
-    fn take(&mut self, source: &mut impl FnMut() -> Option<Block>) {
-        if matches!(self.state, State::Idle | State::Ended | State::Resetting) {
-            return;
-        }
-        let mut taken = 0_usize;
-        while !self.complete && self.memory.borrow().ahead.has_room() && taken < FILL_PER_TICK {
-            let Some(block) = source() else {
-                self.complete = self.closed;
-                if !self.closed && !matches!(self.state, State::Filling) {
-                    self.starved = self.starved.saturating_add(1);
-                }
-                break;
-            };
-            self.complete = matches!(block.work, Work::End);
-            self.memory.borrow_mut().ahead.push(block);
-            if self.single.is_on() {
-                self.memory.borrow_mut().ahead.stand_last();
-            }
-            taken = taken.wrapping_add(1);
-        }
-        self.waited = if taken > 0 { 0 } else { self.waited.saturating_add(1) };
-        if self.window.ticks() > 0 {
-            self.stand_late();
-        }
-        let planned = self.crank.planned_with(self.overrides);
-        if self.memory.borrow().ahead.is_planned_with(planned) {
-            return;
-        }
-        let Memory { ahead, trail } = self.memory.borrow_mut();
-        let active = match &self.current {
-            // what comes follows the motion begun last, wherever the tool is
-            _ if trail.is_behind() => match trail.newest() {
-                Some(newest) => Some(newest).filter(|_| !trail.stands_behind()),
-                // it is planned for when the tool comes near
-                None => return,
-            },
-            _ if trail.stands_behind() => None,
-            Current::Motion(active) => Some(&active.motion),
-            Current::Nothing | Current::Dwell(_) => None,
-        };
-        match (self.window.ticks(), self.crank.drive) {
-            (0, _) | (_, Drive::Spindle(_) | Drive::Wheel(_)) => ahead.plan(active, planned, WORK),
-            (ticks, Drive::Time) => ahead.plan_smooth(active, planned, WORK, ticks),
-        }
-    }
-
-    /// Begins to run once enough is known and planned, or gives up.
-    fn fill(&mut self) {
-        let patient = self.waited < FILL_PATIENCE;
-        let Memory { ahead, trail } = self.memory.borrow();
-        if ahead.is_empty() {
-            if self.complete && !self.closed {
-                self.state = State::Running;
-            } else if self.closed || !patient {
-                self.line = 0;
-                self.state = State::Idle;
-            }
-        } else if (self.complete || !ahead.has_room() || !patient) && (ahead.is_planned() || trail.is_behind()) {
-            self.state = State::Running;
-        }
-    }
-
-    /// A tick's step toward having the motions at hand that were gone back over: before anybody looks where the path leads.
-    #[inline]
-    fn slide(&mut self) {
-        let trail = &mut self.memory.borrow_mut().trail;
-        if self.crank.turns || trail.is_behind() {
-            trail.slide(self.crank.turns && self.crank.back, &mut self.maker);
-        }
-    }
-
-    /// Executes for one tick.
-    fn run(&mut self, out: &mut impl Train) -> Option<Output> {
-        if self.crank.turns {
-            return self.turn_crank(out);
-        }
-        if self.window.ticks() > 0 && !self.memory.borrow().trail.is_behind() && self.follows() {
-            if self.window.is_drained() && matches!(self.current, Current::Nothing) && self.stops_single() {
-                self.state = State::Stopped;
-                self.speed = 0;
-                return None;
-            }
-            self.follow(out);
-            return None;
-        }
-        let mut clock = 0_u32;
-        while clock < TICK_CLOCKS && matches!(self.state, State::Running | State::Holding | State::Resetting) {
-            let left = TICK_CLOCKS.wrapping_sub(clock);
-            match &mut self.current {
-                Current::Motion(_) => match self.go(clock, out) {
-                    Some(used) => clock = clock.wrapping_add(used),
-                    None => break,
-                },
-                Current::Dwell(_) if !matches!(self.state, State::Running) => break,
-                Current::Dwell(clocks) => {
-                    let used = crate::math::to_u32((*clocks).min(u64::from(left)));
-                    *clocks = clocks.wrapping_sub(u64::from(used));
-                    clock = clock.wrapping_add(used);
-                    if *clocks == 0 {
-                        self.current = Current::Nothing;
-                    }
-                }
-                Current::Nothing => match self.next_block() {
-                    Next::Goes if self.crank.turns => break,
-                    Next::Goes => {}
-                    Next::Stands => break,
-                    Next::Output(output) => return Some(output),
-                },
-            }
-        }
-        None
-    }
-
     /// Whether all is made that has to be added to the program where it stands.
     fn settled(&self) -> bool {
         let compensated = !self.compensation.is_on() || self.compensation.settled();
         !self.superposed.owes() && compensated && !self.crank.thread.is_busy()
-    }
-
-    /// Begins what comes next.
-    // apart from `run`, so that a tick inside a block pays nothing for it
-    #[inline(never)]
-    fn next_block(&mut self) -> Next {
-        // a hold brakes on over joints; it ends where the program stands anyway
-        if !matches!(self.state, State::Running) && self.speed == 0 {
-            return Next::Stands;
-        }
-        if self.memory.borrow().trail.is_behind() {
-            // what is not ready yet is waited for
-            let goes = self.memory.borrow_mut().trail.go_on() && self.enter_again();
-            // from standstill it begins with the next tick: a stop and a start are two jumps; and an S law's lead sets off there
-            return if goes && self.speed > 0 { Next::Goes } else { Next::Stands };
-        }
-        // the tool is where it should be before the program stands; and only a cycle moves what is added
-        let moves = self.memory.borrow().ahead.next().is_some_and(|(block, _)| lookahead::as_motion(block).is_some());
-        if !moves && !self.settled() {
-            return Next::Stands;
-        }
-        if self.speed == 0 && self.stops_single() {
-            self.state = State::Stopped;
-            return Next::Goes;
-        }
-        let Memory { ahead, trail } = self.memory.borrow_mut();
-        let Some((block, entry)) = ahead.next() else {
-            self.state = State::Filling;
-            return Next::Stands;
-        };
-        self.line = block.line;
-        // a motion is large: it is copied once, from the look-ahead to where it is executed
-        match block.work {
-            // by what was planned for something else nothing sets off
-            Work::Motion(_) if self.speed == 0 && ahead.is_urgent() => return Next::Stands,
-            // under an S law it begins with the next tick
-            Work::Motion(ref motion) if self.window.ticks() > 0 && is_smoothed(motion) => {
-                self.speed = 0;
-                return Next::Stands;
-            }
-            Work::Motion(ref motion) => {
-                self.speed = if self.speed == 0 {
-                    // planned to be entered at speed, it may come to be begun from a stand: single block, a hold at its joint
-                    root(entry).min(motion.start)
-                } else {
-                    // what braking could not shed of a lowered feed goes on; what the machine can't take does not
-                    self.speed.min(motion.joint).min(motion.limit)
-                };
-                self.current = Current::Motion(Active::new(motion, self.overrides, self.position));
-                trail.push(block.line, motion);
-                ahead.skip();
-                self.begun();
-                return Next::Goes;
-            }
-            Work::Dwell(ticks) => {
-                self.current = Current::Dwell(u64::from(ticks).wrapping_mul(u64::from(TICK_CLOCKS)));
-            }
-            Work::Output(output) => {
-                trail.clear(BackEnd::Output);
-                ahead.skip();
-                return Next::Output(output);
-            }
-            Work::Stop => self.state = State::Stopped,
-            Work::OptionalStop if self.optional_stop => self.state = State::Stopped,
-            Work::OptionalStop => {}
-            Work::End => {
-                self.state = State::Ended;
-                self.line = 0;
-                trail.clear(BackEnd::Start);
-            }
-        }
-        trail.stand();
-        ahead.skip();
-        Next::Goes
-    }
-
-    /// Forgets all blocks after a reset.
-    fn forget(&mut self) {
-        self.memory.borrow_mut().clear();
-        // X stands where a thread has left it
-        self.position.x = self.position.x.wrapping_add(self.crank.thread.take());
-        self.crank.stand();
-        self.window.clear();
-        self.lead = Lead::new();
-        self.current = Current::Nothing;
-        self.complete = false;
-        self.line = 0;
-        self.state = State::Idle;
-    }
-
-    /// Advances the motion from `clock` on; the clocks used, or `None` where it stands for the rest of the tick.
-    fn go(&mut self, clock: u32, out: &mut impl Train) -> Option<u32> {
-        let holding = !matches!(self.state, State::Running);
-        // an S law takes over where the tool is in the motion begun last, from standstill
-        let smooth = self.window.ticks() > 0;
-        let Memory { ahead, trail } = self.memory.borrow();
-        let Current::Motion(active) = &mut self.current else { return None };
-        if active.paced_at != self.overrides {
-            active.repace(self.overrides, &self.crank);
-        }
-        let target = if holding { 0 } else { self.hands.cap(active.pace, active.motion.limit) };
-        if self.speed == 0 {
-            if target == 0 || ahead.is_urgent() {
-                self.await_spindle();
-                return None;
-            }
-            self.speed = target.min(self.rest).max(1);
-        } else if target == 0 && self.speed <= self.rest {
-            self.speed = 0;
-            return None;
-        }
-        // no advance leads past the end
-        let left = active.motion.length.wrapping_sub(active.done);
-        let steady = self.speed == target && clock == 0;
-        let advance = if steady && active.cruise.holds(target, left) {
-            Advance { length: u64::from(target), clocks: TICK_CLOCKS, speed: target, done: false }
-        } else {
-            let exit = if self.single.stops(ahead, self.line) {
-                square(active.motion.stop)
-            } else {
-                trail.exit(ahead, &active.motion, smooth)
-            };
-            let budget = TICK_CLOCKS.wrapping_sub(clock);
-            let advance = active.motion.advance(self.speed, left, exit, target, budget);
-            if steady && advance.speed == target && !advance.done {
-                active.cruise.learn(&active.motion, target, left);
-            }
-            advance
-        };
-        active.done = active.done.wrapping_add(advance.length);
-        self.speed = advance.speed;
-        let mut sink =
-            Sink { shaper: &mut self.shaper, position: &mut self.position, superposed: &mut self.superposed, out };
-        let stretch = Stretch { from: clock, clocks: advance.clocks };
-        active.runner.advance(active.done, stretch, &mut sink);
-        if advance.done {
-            active.runner.finish(clock.wrapping_add(advance.clocks), &mut sink);
-            let stops = self.single.stops(ahead, self.line) && self.speed <= active.motion.stop;
-            let goes_on = trail.runs_on(smooth).unwrap_or_else(|| ahead.continues()) && !stops;
-            self.current = Current::Nothing;
-            if !goes_on {
-                self.speed = 0;
-            }
-        }
-        Some(advance.clocks)
     }
 }

@@ -59,6 +59,11 @@ impl Retract {
         self.follower.pulses()
     }
 
+    /// Pulses that it moved by in the last tick, with [`FRACTION`](crate::compensation::FRACTION) fraction bits.
+    pub(super) const fn speed(&self) -> i64 {
+        self.follower.speed()
+    }
+
     /// Ends it where it is: X stands there from now on. By how many pulses that is off.
     pub(super) const fn take(&mut self) -> i32 {
         let pulses = self.pulses();

@@ -154,7 +154,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         let (mut left, mut exit) = ending(asked);
         let pace = self.crank.pull.map_or(Speed::MAX, |pull| pull.speed).min(motion.top());
         let stops = asked > 0 && pace > 0 && motion.reachable(left, exit) >= square(self.speed);
-        let target = if stops { self.hands.cap(pace, motion.limit) } else { 0 };
+        let target = if stops { self.hands.cap(pace) } else { 0 };
         if !stops {
             (left, exit) = ending(end);
             if self.speed <= motion.accel {

@@ -46,6 +46,11 @@ impl Window {
         self.owed
     }
 
+    /// The longest way of the lead in a tick that is under way.
+    pub(super) fn longest(&self) -> u32 {
+        self.lengths.iter().take(self.ticks.into()).copied().max().unwrap_or(0)
+    }
+
     /// Whether the tool is where the lead is.
     pub(super) const fn is_drained(&self) -> bool {
         self.owed == 0

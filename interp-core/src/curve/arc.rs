@@ -19,9 +19,10 @@
 //! An arc turns by at most a whole turn and so visits at most nine octants. Two neighbouring octants with one major
 //! axis are a *zone*.
 
+use super::PART_BITS;
 use super::method::Method;
 use super::proportion::Proportion;
-use crate::math::QUARTER_Q30;
+use crate::math::{QUARTER_Q30, RADIAN_Q30, to_u32};
 use crate::units::{Axis, Sense};
 
 /// Largest number of octants that an arc visits.
@@ -120,6 +121,30 @@ impl Arc {
         (least, most)
     }
 
+    /// The largest parts of the length that lead along X and Z anywhere between two lengths, or somewhat more: [`PART_BITS`]
+    /// fraction bits. In the middle of a zone the tool moves along its major axis; an angle off that, the other axis has its sine of
+    /// the length, which is less than the angle.
+    pub(crate) fn parts(&self, from: u64, until: u64) -> (u32, u32) {
+        let angle =
+            |length: u64| i64::from(self.timeline.start_angle).wrapping_add_unsigned(self.timeline.angle.of(length));
+        let (from, until) = (angle(from).wrapping_sub(NEAR), angle(until.min(self.timeline.length)).wrapping_add(NEAR));
+        let half_turn = QUARTER_Q30.wrapping_mul(2);
+        // the largest angle off the middles, half a turn apart, of which one is at `middle`
+        let off = |middle: i64| {
+            let by = middle.wrapping_sub(half_turn);
+            let (mut from, mut until) = (from.wrapping_sub(by), until.wrapping_sub(by));
+            while until > QUARTER_Q30 {
+                (from, until) = (from.wrapping_sub(half_turn), until.wrapping_sub(half_turn));
+            }
+            let off = if from < -QUARTER_Q30 { RADIAN_Q30 } else { until.abs().max(from.abs()).min(RADIAN_Q30) };
+            to_u32(off.unsigned_abs() >> (30 - PART_BITS)).saturating_add(1)
+        };
+        match Self::major(self.octant) {
+            Axis::X => (off(QUARTER_Q30), off(0)),
+            Axis::Z => (off(0), off(QUARTER_Q30)),
+        }
+    }
+
     /// Length of the walked arc, nm with 12 fraction bits.
     pub const fn length(&self) -> u64 {
         self.timeline.length
@@ -210,5 +235,56 @@ impl Arc {
             x = x.wrapping_add(1);
         }
         best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::block::{Builder, Curve, Pace, Path};
+    use crate::config::{AxisConfig, Config};
+    use crate::units::{Feedrate, Length, Point, PulseSize};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The tangent of the programmed circle, looked at in many places: nowhere more, and less than the angle over the sine.
+        #[test]
+        fn the_parts_are_those_of_the_tangent_or_somewhat_more(
+            radius in 2.0_f64..20.0, start in 0.0_f64..6.3, turn in 0.1_f64..6.2, counter: bool,
+            ends in (0.0_f64..=1.0, 0.0_f64..=1.0)
+        ) {
+            let axis = |nm: u32| AxisConfig {
+                pulse: PulseSize::new(nm, 1).unwrap(), max_feed: Feedrate::from_nm_per_min(3_000_000_000).unwrap(),
+                max_accel: 500_000, max_jump: 5_000, pulse_width_ns: 2_500, dir_setup_ns: 2_500, dir_hold_ns: 2_500,
+                min_space_ns: 2_500,
+            };
+            let machine = Config { x: axis(500), z: axis(1_250), event_min_ns: 2_000 }.check().unwrap();
+            let sign = if counter { 1.0 } else { -1.0 };
+            // counter-clockwise from Z to X
+            let at = |angle: f64| (radius * angle.sin(), radius * angle.cos());
+            #[allow(clippy::cast_possible_truncation, reason = "a sample")]
+            let nm = |mm: f64| (mm * 1e6).round() as i64;
+            let point = |(x, z): (f64, f64)| Point {
+                x: Length::from_nm(nm(x)).unwrap(), z: Length::from_nm(nm(z)).unwrap(),
+            };
+            let sense = if counter { Sense::CounterClockwise } else { Sense::Clockwise };
+            let mut builder = Builder::new(&machine, point(at(start)));
+            let path = Path::Arc { centre: (0, 0), sense };
+            let built = builder.motion(path, point(at(start + sign * turn)), Pace::Rapid);
+            prop_assume!(built.motions.len() == 1);
+            let motion = &built.motions[0];
+            let Curve::Arc(arc) = &motion.curve else { return Err(TestCaseError::reject("no arc")) };
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "a sample")]
+            let length = |part: f64| (motion.length as f64 * part) as u64;
+            let (from, until) = (ends.0.min(ends.1), ends.0.max(ends.1));
+            let parts = arc.parts(length(from), length(until));
+            let angles = (0..=1000).map(|n| start + sign * turn * (from + (until - from) * f64::from(n) / 1e3));
+            let most = angles.fold((0.0_f64, 0.0_f64), |(x, z), angle| (x.max(angle.cos().abs()), z.max(angle.sin().abs())));
+            for (part, most) in [(parts.0, most.0), (parts.1, most.1)] {
+                let part = f64::from(part) / f64::from(1 << PART_BITS);
+                // rounded ends lie up to a pulse off
+                prop_assert!(part >= most - 2e-3 && part <= (most * core::f64::consts::FRAC_PI_2).min(1.0) + 2e-3, "{part} {most}");
+            }
+        }
     }
 }

@@ -33,6 +33,9 @@ pub mod strides;
 #[cfg(test)]
 mod row_tests;
 
+/// Fraction bits of the part of a curve's length that leads along an axis.
+pub(crate) const PART_BITS: u32 = 16;
+
 /// One step of a walker: -1, 0 or 1 pulse of each axis, at least one of them not 0.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Step {
