@@ -43,8 +43,12 @@ pub(crate) fn test() -> Result<(), String> {
     links::check()?;
     cargo("documentation", &["doc", "--workspace", "--no-deps", "--quiet"], &[("RUSTDOCFLAGS", "-D warnings")])?;
     // optimised, as the property tests interpolate millions of pulses, but with the checks of a debug build
-    let checks =
-        [("CARGO_PROFILE_RELEASE_DEBUG_ASSERTIONS", "true"), ("CARGO_PROFILE_RELEASE_OVERFLOW_CHECKS", "true")];
+    let checks = [
+        ("CARGO_PROFILE_RELEASE_DEBUG_ASSERTIONS", "true"),
+        ("CARGO_PROFILE_RELEASE_OVERFLOW_CHECKS", "true"),
+        // a panic tells its place without
+        ("CARGO_PROFILE_RELEASE_DEBUG", "false"),
+    ];
     cargo("tests", &["test", "--workspace", "--release", "--target-dir", "target/checked"], &checks)?;
     let tool = std::env::current_exe().map_err(|error| error.to_string())?;
     for arguments in [&["lints"][..], &["firmware"], &["no-panic"], &EMULATED, &ENDLESS] {

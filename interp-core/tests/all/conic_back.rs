@@ -1,5 +1,4 @@
 //! Parts of an ellipse under the contour wheel: back over the same points, home exactly, wherever the wheel turns round.
-#![cfg(feature = "methods")]
 #![allow(
     clippy::unwrap_used,
     clippy::arithmetic_side_effects,
