@@ -106,6 +106,8 @@ pub(super) struct Hands {
     offset: Lattice,
     /// The speed that the program may gain.
     left: Speed,
+    /// The path beside which they moved last.
+    path: Option<Path>,
     /// A hand was touched since all were seen to rest.
     touched: bool,
     /// Pulses of X and Z to be made in the next tick that nobody counts.
@@ -119,6 +121,7 @@ impl Hands {
             z: AxisHand::new(&machine.z),
             offset: Lattice { x: 0, z: 0 },
             left: ALL,
+            path: None,
             touched: false,
             correction: (0, 0),
         }
@@ -201,6 +204,7 @@ impl Hands {
         let pulses = (self.x.tick(x), self.z.tick(z));
         let rest = self.at_rest();
         self.left = path.filter(|_| !rest).map_or(ALL, |path| self.leave(path));
+        self.path = path;
         pulses
     }
 }
@@ -282,7 +286,11 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
         }
         let ((least, most), room) = self.find_room(axis, ends);
         self.hands.of(axis).pace = Speed::MAX;
-        let (x, z) = self.hands.bounds(self.path(false));
+        if self.hands.at_rest() {
+            // what moves has looked in the last tick
+            self.hands.path = self.path(false);
+        }
+        let (x, z) = self.hands.bounds(self.hands.path);
         let bounds = if matches!(axis, Axis::X) { x } else { z };
         let hand = self.hands.of(axis);
         let dropped = hand.hand.turn(click, counts, bounds, room);

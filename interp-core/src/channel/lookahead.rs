@@ -13,7 +13,7 @@ pub(super) mod smooth;
 pub(super) mod sweep;
 
 use super::margins::Margins;
-use super::swath::{Groups, Swath};
+use super::swath::{Groups, Parts, Swath};
 use crate::block::{Block, Feed, Motion, Speed, Work};
 use crate::governor::{UNLIMITED, square};
 use crate::math::percent;
@@ -130,10 +130,10 @@ impl<const N: usize> Lookahead<N> {
         self.blocks.is_empty()
     }
 
-    /// Adds a block; it is planned by the next pass.
-    pub fn push(&mut self, block: Block) {
+    /// Adds a block with the axes' parts of it; it is planned by the next pass.
+    pub(super) fn push(&mut self, block: Block, parts: Parts) {
         // the caller asked `has_room`; a full queue would show as a missing block, so it must not be full
-        let swath = Swath::of(&block);
+        let swath = Swath::of(&block, parts);
         let bent = as_motion(&block).is_some_and(Motion::is_bent);
         let planned = Planned { block, entry: NOT_YET, margins: Margins::EMPTY, stands: false, bent, swath };
         if self.blocks.push_back(planned).is_ok() {

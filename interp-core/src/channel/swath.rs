@@ -5,9 +5,28 @@
 
 use super::fence::{Span, end, plus, whole};
 use super::lookahead::as_motion;
-use crate::block::{Block, Motion};
+use crate::block::{Block, Motion, Speed};
 use crate::units::Lattice;
 use heapless::Deque;
+
+/// The largest parts of the path's speed that X and Z have, [`PART_BITS`](crate::curve::PART_BITS) fraction bits, and the largest
+/// speed of the motions.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(super) struct Parts {
+    pub(super) x: u32,
+    pub(super) z: u32,
+    pub(super) limit: Speed,
+}
+
+impl Parts {
+    /// Of no motion.
+    pub(super) const NONE: Self = Self { x: 0, z: 0, limit: 0 };
+
+    /// Of both.
+    pub(super) fn and(self, other: Self) -> Self {
+        Self { x: self.x.max(other.x), z: self.z.max(other.z), limit: self.limit.max(other.limit) }
+    }
+}
 
 /// What a path leads through, from where it begins.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -20,21 +39,24 @@ pub(super) struct Swath {
     pub(super) length: u64,
     /// What braking sheds of the squared speed from its start to its end.
     pub(super) sheds: u64,
+    /// The axes' parts of it.
+    pub(super) parts: Parts,
 }
 
 const HERE: Lattice = Lattice { x: 0, z: 0 };
 
 impl Swath {
-    const NONE: Self = Self { span: Span::at(HERE), end: HERE, length: 0, sheds: 0 };
+    const NONE: Self = Self { span: Span::at(HERE), end: HERE, length: 0, sheds: 0, parts: Parts::NONE };
 
     /// Of a block; what is no motion is so long that nothing passes it as a whole.
-    pub(super) fn of(block: &Block) -> Self {
+    pub(super) fn of(block: &Block, parts: Parts) -> Self {
         match as_motion(block) {
             Some(motion) => Self {
                 span: whole(HERE, motion),
                 end: end(motion),
                 length: motion.length,
                 sheds: motion.length.saturating_mul(shed(motion)),
+                parts,
             },
             None => Self { length: u64::MAX, sheds: u64::MAX, ..Self::NONE },
         }
@@ -47,6 +69,7 @@ impl Swath {
             end: plus(self.end, next.end),
             length: self.length.saturating_add(next.length),
             sheds: self.sheds.saturating_add(next.sheds),
+            parts: self.parts.and(next.parts),
         }
     }
 }
@@ -119,10 +142,11 @@ mod tests {
 
     fn swath() -> impl Strategy<Value = Swath> {
         (-50_i32..50, -50_i32..50, 0_i32..20, 1_u64..100, 0_u64..1000).prop_map(|(x, z, more, length, sheds)| {
+            let parts = Parts { x: x.unsigned_abs(), z: z.unsigned_abs(), limit: more.unsigned_abs() };
             let end = Lattice { x, z };
             let least = Lattice { x: x.min(0) - more, z: z.min(0) };
             let most = Lattice { x: x.max(0), z: z.max(0) + more };
-            Swath { span: Span { least, most }, end, length, sheds }
+            Swath { span: Span { least, most }, end, length, sheds, parts }
         })
     }
 

@@ -29,7 +29,8 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
                 break;
             };
             self.complete = matches!(block.work, Work::End);
-            self.memory.borrow_mut().ahead.push(block);
+            let parts = self.hands.parts_of(&block);
+            self.memory.borrow_mut().ahead.push(block, parts);
             if self.single.is_on() {
                 self.memory.borrow_mut().ahead.stand_last();
             }

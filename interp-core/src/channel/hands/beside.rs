@@ -16,9 +16,10 @@
 //! it within its largest speed at the motion's own. What is not known counts as all of the path's speed.
 
 use super::super::lookahead::as_motion;
+use super::super::swath::{Groups, Parts};
 use super::super::{Channel, Current, Memory, State};
 use super::{ALL, AxisHand, Hands};
-use crate::block::{Curve, Motion, Speed};
+use crate::block::{Block, Curve, Motion, Speed};
 use crate::config::FRACTION_BITS;
 use crate::curve::PART_BITS;
 use crate::drive::follower::Bounds;
@@ -26,8 +27,8 @@ use crate::drive::{Drive, ThreadStage};
 use crate::math::to_u32;
 use core::borrow::BorrowMut;
 
-/// Blocks that are looked at behind the present motion.
-const BLOCKS: usize = 12;
+/// Blocks that are looked at behind the present motion: a tick has no time for more.
+const BLOCKS: usize = 24;
 
 /// Ticks that are added to those in which the hands come to a stand: the one that comes, and what division cuts off.
 const TICKS: u32 = 3;
@@ -35,22 +36,8 @@ const TICKS: u32 = 3;
 /// All of the path's speed.
 const WHOLE: u32 = 1 << PART_BITS;
 
-/// The largest parts of the path's speed that X and Z have, and the largest speed of the motions.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-struct Parts {
-    x: u32,
-    z: u32,
-    limit: Speed,
-}
-
-impl Parts {
-    /// All of it.
-    const UNKNOWN: Self = Self { x: WHOLE, z: WHOLE, limit: Speed::MAX };
-
-    fn and(self, other: Self) -> Self {
-        Self { x: self.x.max(other.x), z: self.z.max(other.z), limit: self.limit.max(other.limit) }
-    }
-}
+/// What is not known.
+const UNKNOWN: Parts = Parts { x: WHOLE, z: WHOLE, limit: Speed::MAX };
 
 /// A path that may move in the tick to come.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -112,6 +99,11 @@ impl Hands {
         self.x.leaves(path.parts.x).min(self.z.leaves(path.parts.z))
     }
 
+    /// The parts that X and Z have of a block.
+    pub(in super::super) fn parts_of(&self, block: &Block) -> Parts {
+        as_motion(block).map_or(Parts::NONE, |motion| self.parts(motion, 0, motion.length))
+    }
+
     /// The parts that X and Z have of a motion between two lengths along it.
     fn parts(&self, motion: &Motion, from: u64, until: u64) -> Parts {
         let straight = |(x, z): (i32, i32)| (self.x.part(x, motion), self.z.part(z, motion));
@@ -155,7 +147,7 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
 
     /// The parts that X and Z have on so much of the way.
     fn parts_on(&self, way: u64) -> Parts {
-        let (mut left, mut parts) = (way, Parts { x: 0, z: 0, limit: 0 });
+        let (mut left, mut parts) = (way, Parts::NONE);
         let Memory { ahead, trail } = self.memory.borrow();
         let back = self.crank.back || matches!(self.crank.thread.stage(), ThreadStage::Returning);
         if let Current::Motion(active) = &self.current {
@@ -168,28 +160,38 @@ impl<const N: usize, M: BorrowMut<Memory<N>>> Channel<N, M> {
             left = left.wrapping_sub(room);
         }
         if back || trail.is_behind() {
-            return Parts::UNKNOWN;
+            return UNKNOWN;
         }
         let mut index = 0_usize;
-        while let Some((block, _)) = ahead.swath(index) {
+        while let Some((block, swath)) = ahead.swath(index) {
+            if index >= BLOCKS {
+                return UNKNOWN;
+            }
+            if let Some(group) = ahead.group(index).filter(|group| group.length < left) {
+                parts = parts.and(group.parts);
+                left = left.wrapping_sub(group.length);
+                index = index.wrapping_add(Groups::<N>::SIZE);
+                continue;
+            }
             // what is no motion may be over at once
             if let Some(motion) = as_motion(block) {
                 if motion.feed.is_thread() != self.crank.in_thread {
                     // it stands there
                     return parts;
                 }
-                parts = parts.and(self.hands.parts(motion, 0, left));
                 if left <= motion.length {
-                    return parts;
+                    // only a part of it counts
+                    return parts.and(match motion.curve {
+                        Curve::Arc(_) => self.hands.parts(motion, 0, left),
+                        _ => swath.parts,
+                    });
                 }
+                parts = parts.and(swath.parts);
                 left = left.wrapping_sub(motion.length);
             }
             index = index.wrapping_add(1);
-            if index > BLOCKS {
-                return Parts::UNKNOWN;
-            }
         }
-        if self.complete { parts } else { Parts::UNKNOWN }
+        if self.complete { parts } else { UNKNOWN }
     }
 }
 
