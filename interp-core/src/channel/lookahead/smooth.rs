@@ -59,12 +59,13 @@ impl<const N: usize> Lookahead<N> {
     /// Each line is begun from standstill, after the rest of `line`, as far as there is way to brake in: from the start of block
     /// `first` on where the squared speed `speed` is left there, so much of which that block's way sheds.
     pub(in crate::channel) fn stand_lines(&mut self, line: u32, first: usize, speed: u64) {
-        let (mut before, mut speed) = (line, speed);
-        for (index, planned) in self.blocks.iter_mut().enumerate() {
-            if index >= first {
+        let (mut before, mut speed, mut left) = (line, speed, first);
+        for planned in &mut self.blocks {
+            if left == 0 {
                 planned.stands |= planned.block.line != before && speed == 0;
                 speed = speed.saturating_sub(planned.swath.sheds);
             }
+            left = left.saturating_sub(1);
             before = planned.block.line;
         }
         self.sweep.again(true);
