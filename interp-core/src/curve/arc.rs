@@ -136,8 +136,9 @@ impl Arc {
             while until > QUARTER_Q30 {
                 (from, until) = (from.wrapping_sub(half_turn), until.wrapping_sub(half_turn));
             }
-            let off = if from < -QUARTER_Q30 { RADIAN_Q30 } else { until.abs().max(from.abs()).min(RADIAN_Q30) };
-            to_u32(off.unsigned_abs() >> (30 - PART_BITS)).saturating_add(1)
+            let all = RADIAN_Q30.unsigned_abs();
+            let off = if from < -QUARTER_Q30 { all } else { until.unsigned_abs().max(from.unsigned_abs()).min(all) };
+            to_u32(off >> (30 - PART_BITS)).saturating_add(1)
         };
         match Self::major(self.octant) {
             Axis::X => (off(QUARTER_Q30), off(0)),
