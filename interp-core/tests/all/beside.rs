@@ -1,14 +1,15 @@
 //! Hands beside a path: whatever both do, no axis passes its largest speed; and what the path leaves of it is the hand's.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use interp_core::block::{Block, Builder, Motion, Pace, Path, Work};
+use crate::pieces::{Piece, motions};
+use interp_core::block::{Block, Work};
 use interp_core::channel::Channel;
 use interp_core::config::{AxisConfig, Config, Machine};
 use interp_core::drive::wheel::Click;
 use interp_core::drive::{Drive, Inputs};
 use interp_core::law::SpeedLaw;
 use interp_core::train::Event;
-use interp_core::units::{Axis, Feedrate, Lattice, Length, Point, PulseSize, Sense};
+use interp_core::units::{Axis, Feedrate, Lattice, PulseSize};
 use proptest::prelude::*;
 
 const FAR: i32 = i32::MAX >> 1;
@@ -30,36 +31,6 @@ fn machine(law: SpeedLaw, pulses: (u32, u32)) -> Machine {
     };
     let config = Config { x: axis(pulses.0, SPEEDS.0, 300), z: axis(pulses.1, SPEEDS.1, 700), event_min_ns: 2_000 };
     config.check().unwrap().with_hands().with_law(law, 25_000).unwrap()
-}
-
-fn point(x_um: i32, z_um: i32) -> Point {
-    Point { x: Length::from_um(x_um).unwrap(), z: Length::from_um(z_um).unwrap() }
-}
-
-/// A piece of a program: a relative end in um, or a half circle of a radius to either side.
-#[derive(Clone, Debug)]
-enum Piece {
-    Line(i32, i32),
-    Half(i32, bool),
-}
-
-fn motions(machine: &Machine, pieces: &[Piece], feed: i64) -> Vec<Motion> {
-    let (mut builder, mut at) = (Builder::new(machine, point(0, 0)), (0, 0));
-    let pace = Pace::Feed(Feedrate::from_nm_per_min(feed.cast_unsigned() * 1_000_000).unwrap());
-    let mut motions = Vec::new();
-    for piece in pieces {
-        let (path, end) = match piece {
-            Piece::Line(x, z) => (Path::Line, (at.0 + x, at.1 + z)),
-            Piece::Half(radius, left) => {
-                let centre = (i64::from(at.0) * 1_000, i64::from(at.1 + radius) * 1_000);
-                let sense = if *left { Sense::CounterClockwise } else { Sense::Clockwise };
-                (Path::Arc { centre, sense }, (at.0, at.1 + 2 * radius))
-            }
-        };
-        motions.extend(builder.motion(path, point(end.0, end.1), pace).motions.iter().copied());
-        at = end;
-    }
-    motions
 }
 
 fn pieces() -> impl Strategy<Value = Vec<Piece>> {

@@ -1,14 +1,15 @@
 //! The fence: whatever path and hands do, the tool stays inside; and what stays inside by itself is not held.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use interp_core::block::{Block, Builder, Motion, Pace, Path, Work};
+use crate::pieces::{Piece, motions};
+use interp_core::block::{Block, Work};
 use interp_core::channel::{Channel, State};
 use interp_core::config::{AxisConfig, Config, Machine};
 use interp_core::drive::wheel::Click;
 use interp_core::drive::{Drive, Inputs};
 use interp_core::law::SpeedLaw;
 use interp_core::train::Event;
-use interp_core::units::{Axis, Feedrate, Lattice, Length, Point, PulseSize, Sense};
+use interp_core::units::{Axis, Feedrate, Lattice, PulseSize};
 use proptest::prelude::*;
 
 const FAR: i32 = i32::MAX >> 1;
@@ -26,36 +27,6 @@ fn machine(law: SpeedLaw) -> Machine {
     };
     let config = Config { x: axis(1250, 300), z: axis(2500, 700), event_min_ns: 2_000 };
     config.check().unwrap().with_hands().with_law(law, 50_000).unwrap()
-}
-
-fn point(x_um: i32, z_um: i32) -> Point {
-    Point { x: Length::from_um(x_um).unwrap(), z: Length::from_um(z_um).unwrap() }
-}
-
-/// A piece of a program: a relative end in um, or a half circle of a radius to either side.
-#[derive(Clone, Debug)]
-enum Piece {
-    Line(i32, i32),
-    Half(i32, bool),
-}
-
-fn motions(machine: &Machine, pieces: &[Piece]) -> Vec<Motion> {
-    let (mut builder, mut at) = (Builder::new(machine, point(0, 0)), (0, 0));
-    let pace = Pace::Feed(Feedrate::from_nm_per_min(1_500_000_000).unwrap());
-    let mut motions = Vec::new();
-    for piece in pieces {
-        let (path, end) = match piece {
-            Piece::Line(x, z) => (Path::Line, (at.0 + x, at.1 + z)),
-            Piece::Half(radius, left) => {
-                let centre = (i64::from(at.0) * 1_000, i64::from(at.1 + radius) * 1_000);
-                let sense = if *left { Sense::CounterClockwise } else { Sense::Clockwise };
-                (Path::Arc { centre, sense }, (at.0, at.1 + 2 * radius))
-            }
-        };
-        motions.extend(builder.motion(path, point(end.0, end.1), pace).motions.iter().copied());
-        at = end;
-    }
-    motions
 }
 
 fn pieces() -> impl Strategy<Value = Vec<Piece>> {
@@ -85,7 +56,7 @@ fn run(
     (from, fence): (usize, (Lattice, Lattice)),
 ) -> Result<(bool, Lattice, Lattice), TestCaseError> {
     let machine = machine(law);
-    let motions = motions(&machine, pieces);
+    let motions = motions(&machine, pieces, 1_500);
     let mut blocks = motions.iter().map(|motion| Block { line: 1, work: Work::Motion(*motion) });
     let mut channel = Channel::<16>::new(&machine, Lattice { x: 0, z: 0 });
     let click = Click::from_nm(100_000).unwrap();

@@ -19,6 +19,7 @@ mod group;
 mod laws;
 #[cfg(feature = "methods")]
 mod parts;
+mod pieces;
 mod rows;
 mod short_blocks;
 mod shoulder;
